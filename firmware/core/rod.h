@@ -1,0 +1,77 @@
+/* rod.h - an elastic rod of N links that follows a hand: parameters in, a pose per tick in, joint
+ * angles out. This is the header to include.
+ *
+ *     static rod foil;                              // caller-owned; about 10 KB at 64 links
+ *     rod_params params;
+ *     rod_preset_fill(rod_preset_find("foil"), 8, &params);
+ *     rod_init(&foil, &params, NULL);               // straight and at rest
+ *     for (;;) {                                    // every params.tick_s
+ *         rod_step(&foil, &base);
+ *         drive(rod_angles(&foil));
+ *     }
+ *
+ * SI units and radians. World axes right-handed; the base is the hand, its +z runs along the straight
+ * rod. No heap, no globals, no I/O, no clock, no libm; float32 with one fixed order of operations, so
+ * the same inputs give the same bits on every target (subnormals are kept, never flushed).
+ *
+ * Interrupts: rod_step takes the same time at every call for a given N, does not block, and may run in
+ * one; a rod must not be stepped and changed at once. Errors are negative (rod_params.h); a call that
+ * returns one has changed nothing.
+ */
+#ifndef LIMBER_ROD_H
+#define LIMBER_ROD_H
+
+#include "contour.h"
+#include "kinematics.h"
+#include "presets.h"
+#include "rod_params.h"
+
+/* An external energy, as world forces on the nodes: objects touched, wind, a shape to take. Reads
+ * nodes 0 ... nodes_n - 1 (m, world) and writes as many forces (N), all zero beforehand. Called once
+ * in each rod_step, with the nodes as the last step left them. */
+typedef void (*rod_force_fn)(const vec3 *nodes_m, int nodes_n, vec3 *forces_newton, void *context);
+
+/* One rod. Treat the members as private: they may change with any version. */
+typedef struct {
+    rod_params params;
+    contour model;
+    contour_state state[2]; /* a step reads one and writes the other, so a failed one spoils nothing */
+    int current;
+    bool started; /* a base pose has been seen */
+    rod_pose base;
+    rod_motion motion; /* of the base, in the last tick */
+    rod_force_fn force;
+    void *force_context;
+} rod;
+
+/* Check, prepare, and lay the rod straight and at rest. *refusal (may be NULL) says what was wrong.
+ * Errors: those of rod_params_check, ROD_E_PIVOT. Cost: one factorisation. */
+rod_error rod_init(rod *r, const rod_params *params, rod_refusal *refusal);
+
+/* Change parameters while the rod lives: angles and speeds stay. Joints that are new are straight and
+ * at rest; after a change of tick the speeds are kept per second. Errors and cost as rod_init. */
+rod_error rod_set_params(rod *r, const rod_params *params, rod_refusal *refusal);
+
+/* Straight and at rest; the next step starts from its pose, wherever that is. Forces stay set. */
+void rod_reset(rod *r);
+
+/* External forces from now on; NULL for none (as after rod_init). */
+void rod_set_force(rod *r, rod_force_fn force, void *context);
+
+/* One tick: the base is now here. The first step after rod_init or rod_reset only takes the pose.
+ * The quaternion must be of unit length to 1e-3. Errors: ROD_E_POSE, ROD_E_FORCE, ROD_E_NOT_FINITE.
+ * Cost on a Cortex-M4F, instructions: see README, "What it costs"; linear in N, nothing else. */
+rod_error rod_step(rod *r, const rod_pose *base);
+
+/* The joints' angles after the last step, rad: links_n rows of [ROD_THETA], [ROD_PHI]. Points into
+ * the rod; valid until the next call that takes a non-const rod. */
+const rod_joint *rod_angles(const rod *r);
+
+/* Nodes 0 ... links_n in the world, m, into the caller's links_n + 1 entries. Returns that number,
+ * or 0 before the first pose. About 90 instructions a link: ask when you need them. */
+int rod_nodes(const rod *r, vec3 *nodes_m);
+
+/* The parameters in force. */
+const rod_params *rod_params_of(const rod *r);
+
+#endif
