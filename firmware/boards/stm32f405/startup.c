@@ -1,0 +1,61 @@
+/* startup.c - from reset to main on a Cortex-M4F (ARMv7-M ARM, B1.5.5 reset, B1.4.7 CPACR). */
+#include <stdint.h>
+#include <string.h>
+
+extern uint32_t data_start[], data_end[], data_image[], bss_start[], bss_end[], stack_top[];
+
+int main(int argc, char **argv);
+void _exit(int status);
+void reset_handler(void);
+void fault_handler(void);
+
+/* What a host gives the program as arguments; tests that take some replace it. */
+__attribute__((weak)) int startup_arguments(char ***argv);
+int startup_arguments(char ***argv)
+{
+    static char *none[] = {(char *)"", (char *)0};
+    *argv = none;
+    return 1;
+}
+
+/* Before main, with memory ready: where a C library needs waking. */
+__attribute__((weak)) void startup_wake_library(void);
+void startup_wake_library(void)
+{
+}
+
+__attribute__((naked)) void reset_handler(void)
+{
+    /* The FPU comes first: the compiler may use its registers anywhere in C. */
+    __asm__ volatile("ldr r0, =0xE000ED88 \n"
+                     "ldr r1, [r0]        \n"
+                     "orr r1, #0xF00000   \n"
+                     "str r1, [r0]        \n"
+                     "dsb                 \n"
+                     "isb                 \n"
+                     "b start             \n");
+}
+
+__attribute__((used)) static void start(void) __asm__("start");
+static void start(void)
+{
+    memcpy(data_start, data_image, (size_t)((char *)data_end - (char *)data_start));
+    memset(bss_start, 0, (size_t)((char *)bss_end - (char *)bss_start));
+    startup_wake_library();
+    char **argv;
+    const int argc = startup_arguments(&argv);
+    _exit(main(argc, argv));
+}
+
+void fault_handler(void)
+{
+    _exit(70); /* EX_SOFTWARE: ends an emulated test instead of hanging it */
+}
+
+/* The 16 of the core (ARMv7-M ARM, table B1-4); no peripheral interrupt is enabled yet. */
+__attribute__((section(".vectors"), used)) static const uintptr_t vectors[16] = {
+    (uintptr_t)stack_top,     (uintptr_t)reset_handler, (uintptr_t)fault_handler,
+    (uintptr_t)fault_handler, (uintptr_t)fault_handler, (uintptr_t)fault_handler,
+    (uintptr_t)fault_handler, [11] = (uintptr_t)fault_handler,
+    [12] = (uintptr_t)fault_handler, [14] = (uintptr_t)fault_handler, [15] = (uintptr_t)fault_handler,
+};

@@ -1,0 +1,10 @@
+# Cortex-M4F with arm-none-eabi-gcc. Runs what it builds on QEMU's model of the board.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR cortex-m4)
+set(CMAKE_C_COMPILER arm-none-eabi-gcc)
+set(CMAKE_ASM_COMPILER arm-none-eabi-gcc)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(cpu "-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard")
+set(CMAKE_C_FLAGS_INIT "${cpu} -ffunction-sections -fdata-sections")
+set(CMAKE_ASM_FLAGS_INIT "${cpu}")
+set(CMAKE_EXECUTABLE_SUFFIX_C .elf)

@@ -1,0 +1,33 @@
+/* params_text.h - rod parameters as people write them: presets, INI files, key=value, and back to INI. */
+#ifndef LIMBER_PARAMS_TEXT_H
+#define LIMBER_PARAMS_TEXT_H
+
+#include <stdio.h>
+
+#include "rod.h"
+
+/* What was written for one key; a scalar counts for every joint. */
+typedef struct {
+    int values_n; /* 0: nothing was */
+    float values[ROD_MAX_LINKS];
+    char origin[160]; /* "foil.ini:7", for complaints that come later */
+} params_entry;
+
+/* Everything written so far. Start it with {0}; later entries replace earlier ones. */
+typedef struct {
+    const rod_preset *preset; /* the base of it all, or NULL for the defaults */
+    params_entry entries[ROD_FIELDS_N];
+} params_text;
+
+/* Each returns SIM_OK, or SIM_BAD_INPUT after one line with place, value and bounds. */
+int params_text_preset(params_text *text, const char *name);
+int params_text_read_ini(params_text *text, const char *path);
+int params_text_set(params_text *text, const char *key_equals_value);
+
+/* Everything together at this tick, checked as the rod itself will check it. */
+int params_text_resolve(const params_text *text, double rate_hz, rod_params *params);
+
+/* A complete, commented INI file that reads back to the same parameters. */
+void params_text_write_ini(const rod_params *params, const char *title, FILE *out);
+
+#endif

@@ -1,0 +1,47 @@
+/* replay.h - a rod run along a track, tick by tick, and everything that came of it.
+ *
+ * Only what is kept for later is in memory: all angles, and the base poses. The rod itself is the
+ * board's.
+ */
+#ifndef LIMBER_REPLAY_H
+#define LIMBER_REPLAY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "rod.h"
+#include "track.h"
+
+typedef struct {
+    double peak_rad[2], rms_rad[2]; /* theta, phi */
+    double lag_deg;                 /* behind joint 1, at the strongest frequency of joint 1 */
+    bool lag_known;
+    double stop_share; /* of the ticks, with either angle on its stop */
+} replay_joint;
+
+typedef struct {
+    const track *source; /* borrowed */
+    rod_params params;
+    double rate_hz;
+    long ticks_n;
+    track_tick *ticks; /* ticks_n */
+    float *angles_rad; /* ticks_n rows of 2 * links_n, theta before phi */
+    long restarts;     /* after gaps */
+    double step_median_us, step_p99_us, step_max_us;
+    double lag_frequency_hz; /* 0 where joint 1 hardly moves */
+    replay_joint joints[ROD_MAX_LINKS];
+    uint64_t hash;
+} replay;
+
+/* Runs the whole track. Returns SIM_OK, or an exit code after complaining. Shows a progress bar on
+ * stderr where that is a terminal and the run is long. The caller frees with replay_free. */
+int replay_run(const track *source, const rod_params *params, double rate_hz, replay *out);
+void replay_free(replay *r);
+
+/* The nodes at a tick, 0 ... links_n, in the track's own place. */
+void replay_nodes(const replay *r, long tick, double nodes_m[][3]);
+
+const float *replay_angles(const replay *r, long tick);
+
+#endif

@@ -1,0 +1,223 @@
+/* report.c - see report.h: fills the template's two markers, the chart library and the data. */
+#include "report.h"
+
+#include <cjson/cJSON.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "sim.h"
+#include "summary.h"
+
+extern const char report_template[], report_template_end[]; /* report_page.S */
+extern const char report_chart_js[], report_chart_js_end[];
+
+static const long FRAMES_MAX = 3000;
+
+/* A list of floats as base64 of their little-endian bytes: a quarter of the size of numbers in text. */
+typedef struct {
+    unsigned char *bytes;
+    size_t bytes_n;
+} float_list;
+
+static void append(float_list *list, float value)
+{
+    memcpy(list->bytes + list->bytes_n, &value, sizeof value);
+    list->bytes_n += sizeof value;
+}
+
+static char *base64(const float_list *list)
+{
+    static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char *text = malloc(4 * (list->bytes_n / 3 + 1) + 1);
+    if (text == NULL) {
+        return NULL;
+    }
+    char *out = text;
+    for (size_t i = 0; i < list->bytes_n; i += 3) {
+        const size_t left = list->bytes_n - i;
+        const unsigned bits = (unsigned)list->bytes[i] << 16 | (left > 1 ? (unsigned)list->bytes[i + 1] << 8 : 0) |
+                              (left > 2 ? (unsigned)list->bytes[i + 2] : 0);
+        *out++ = DIGITS[bits >> 18];
+        *out++ = DIGITS[bits >> 12 & 63];
+        *out++ = left > 1 ? DIGITS[bits >> 6 & 63] : '=';
+        *out++ = left > 2 ? DIGITS[bits & 63] : '=';
+    }
+    *out = '\0';
+    return text;
+}
+
+static void append_angles(float_list *list, const replay *r, long tick)
+{
+    const float *angles = replay_angles(r, tick);
+    for (int i = 0; i < 2 * r->params.links_n; i++) {
+        append(list, angles[i]);
+    }
+}
+
+static void append_nodes(float_list *list, const replay *r, long tick)
+{
+    double nodes_m[ROD_MAX_LINKS + 1][3];
+    replay_nodes(r, tick, nodes_m);
+    for (int i = 0; i <= r->params.links_n; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            append(list, (float)nodes_m[i][axis]);
+        }
+    }
+}
+
+static void append_attitude(float_list *list, const replay *r, long tick)
+{
+    const quat q = r->ticks[tick].base.orientation;
+    append(list, q.x);
+    append(list, q.y);
+    append(list, q.z);
+    append(list, q.w);
+}
+
+static void add_frames(cJSON *page, const char *name, const replay *r, long frame_step, int values_n,
+                       void (*append_frame)(float_list *, const replay *, long))
+{
+    const size_t frames_n = (size_t)((r->ticks_n - 1) / frame_step + 1);
+    float_list list = {malloc(frames_n * (size_t)values_n * sizeof(float)), 0};
+    if (list.bytes == NULL) {
+        return; /* the page says which array is missing */
+    }
+    for (long tick = 0; tick < r->ticks_n; tick += frame_step) {
+        append_frame(&list, r, tick);
+    }
+    char *text = base64(&list);
+    if (text != NULL) {
+        cJSON_AddStringToObject(page, name, text);
+    }
+    free(text);
+    free(list.bytes);
+}
+
+static void add_parameters(cJSON *page, const rod_params *params)
+{
+    cJSON *list = cJSON_AddArrayToObject(page, "parameters");
+    for (int i = 0; i < ROD_FIELDS_N; i++) {
+        const rod_field *field = &rod_fields[i];
+        cJSON *entry = cJSON_CreateObject();
+        cJSON_AddItemToArray(list, entry);
+        cJSON_AddStringToObject(entry, "name", field->name);
+        cJSON_AddStringToObject(entry, "symbol", field->symbol);
+        cJSON_AddStringToObject(entry, "unit", field->unit);
+        cJSON *values = cJSON_AddArrayToObject(entry, "values");
+        const int values_n = field->kind == ROD_FIELD_PER_JOINT ? params->links_n : 1;
+        for (int joint = 0; joint < values_n; joint++) {
+            const float value = rod_field_get(field, params, joint);
+            cJSON_AddItemToArray(values, field->kind == ROD_FIELD_CHOICE
+                                             ? cJSON_CreateString(field->choices[(int)value])
+                                             : cJSON_CreateNumber((double)value));
+        }
+    }
+}
+
+static void add_summary(cJSON *page, const replay *r, const char *preset)
+{
+    summary s;
+    summary_make(r, preset, &s);
+    cJSON *rows = cJSON_AddArrayToObject(page, "summary");
+    for (int i = 0; i < s.rows_n; i++) {
+        const char *row[] = {s.labels[i], s.values[i]};
+        cJSON_AddItemToArray(rows, cJSON_CreateStringArray(row, 2));
+    }
+    cJSON *warnings = cJSON_AddArrayToObject(page, "warnings");
+    for (int i = 0; i < s.warnings_n; i++) {
+        cJSON_AddItemToArray(warnings, cJSON_CreateString(s.warnings[i]));
+    }
+}
+
+static void add_joints(cJSON *page, const replay *r)
+{
+    cJSON *list = cJSON_AddArrayToObject(page, "joints");
+    for (int i = 0; i < r->params.links_n; i++) {
+        const replay_joint *j = &r->joints[i];
+        cJSON *entry = cJSON_CreateObject();
+        cJSON_AddItemToArray(list, entry);
+        cJSON_AddNumberToObject(entry, "peak_theta_rad", j->peak_rad[0]);
+        cJSON_AddNumberToObject(entry, "peak_phi_rad", j->peak_rad[1]);
+        cJSON_AddNumberToObject(entry, "rms_theta_rad", j->rms_rad[0]);
+        cJSON_AddNumberToObject(entry, "rms_phi_rad", j->rms_rad[1]);
+        cJSON_AddItemToObject(entry, "lag_deg",
+                              j->lag_known ? cJSON_CreateNumber(j->lag_deg) : cJSON_CreateNull());
+        cJSON_AddNumberToObject(entry, "stop_share", j->stop_share);
+    }
+}
+
+static cJSON *make_page(const replay *r, const char *preset)
+{
+    const rod_params *p = &r->params;
+    const long frame_step = (r->ticks_n - 1) / FRAMES_MAX + 1;
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016" PRIx64, r->hash);
+
+    cJSON *page = cJSON_CreateObject();
+    cJSON_AddStringToObject(page, "program", "limber-sim " SIM_VERSION);
+    cJSON_AddStringToObject(page, "track", r->source->path);
+    cJSON_AddStringToObject(page, "model", rod_field_find("model")->choices[p->model]);
+    cJSON_AddStringToObject(page, "scheme", rod_field_find("scheme")->choices[p->scheme]);
+    cJSON_AddItemToObject(page, "preset", preset != NULL ? cJSON_CreateString(preset) : cJSON_CreateNull());
+    cJSON_AddNumberToObject(page, "rate_hz", r->rate_hz);
+    cJSON_AddNumberToObject(page, "steps", (double)r->ticks_n);
+    cJSON_AddNumberToObject(page, "links", p->links_n);
+    cJSON_AddStringToObject(page, "hash", hash);
+    add_parameters(page, p);
+    add_summary(page, r, preset);
+    add_joints(page, r);
+    cJSON_AddNumberToObject(page, "frame_step", (double)frame_step);
+    cJSON_AddNumberToObject(page, "frames", (double)((r->ticks_n - 1) / frame_step + 1));
+    cJSON_AddNumberToObject(page, "frame_dt_s", (double)frame_step / r->rate_hz);
+    cJSON_AddStringToObject(page, "up", "z");
+    add_frames(page, "angles", r, frame_step, 2 * p->links_n, append_angles);
+    add_frames(page, "nodes", r, frame_step, 3 * (p->links_n + 1), append_nodes);
+    add_frames(page, "base_q", r, frame_step, 4, append_attitude);
+    return page;
+}
+
+/* JSON inside a <script> must not close it: every '<' goes out as an escape. */
+static void write_json(const char *json, FILE *file)
+{
+    for (const char *c = json; *c != '\0'; c++) {
+        if (*c == '<') {
+            fputs("\\u003c", file);
+        } else {
+            putc(*c, file);
+        }
+    }
+}
+
+static void write_page(const char *json, FILE *file)
+{
+    static const char CHART_JS[] = "@CHART_JS@", DATA[] = "@DATA@";
+    const char *chart_js = strstr(report_template, CHART_JS);
+    const char *data = strstr(report_template, DATA);
+    fwrite(report_template, 1, (size_t)(chart_js - report_template), file);
+    fwrite(report_chart_js, 1, (size_t)(report_chart_js_end - report_chart_js), file);
+    chart_js += strlen(CHART_JS);
+    fwrite(chart_js, 1, (size_t)(data - chart_js), file);
+    write_json(json, file);
+    data += strlen(DATA);
+    fwrite(data, 1, (size_t)(report_template_end - data), file);
+}
+
+int report_write(const replay *r, const char *preset, const char *path)
+{
+    cJSON *page = make_page(r, preset);
+    char *json = cJSON_PrintUnformatted(page);
+    cJSON_Delete(page);
+    if (json == NULL) {
+        return sim_give_up("%s: out of memory", path);
+    }
+    output out;
+    int result = output_open(&out, path);
+    if (result == SIM_OK) {
+        write_page(json, out.file);
+        result = output_close(&out, true);
+    }
+    cJSON_free(json);
+    return result;
+}

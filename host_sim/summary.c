@@ -1,0 +1,146 @@
+/* summary.c - see summary.h. */
+#include "summary.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+static __attribute__((format(printf, 3, 4))) void add_row(summary *s, const char *label,
+                                                          const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    snprintf(s->labels[s->rows_n], SUMMARY_TEXT_MAX, "%s", label);
+    vsnprintf(s->values[s->rows_n], SUMMARY_TEXT_MAX, format, arguments);
+    va_end(arguments);
+    s->rows_n++;
+}
+
+static __attribute__((format(printf, 2, 3))) void add_warning(summary *s, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(s->warnings[s->warnings_n++], SUMMARY_TEXT_MAX, format, arguments);
+    va_end(arguments);
+}
+
+static void add_count(char *list, long count, const char *one, const char *many)
+{
+    if (count > 0) {
+        const size_t used = strlen(list);
+        snprintf(list + used, SUMMARY_TEXT_MAX - used, "%s%ld %s", used > 0 ? ", " : "", count,
+                 count == 1 ? one : many);
+    }
+}
+
+static void describe_track(summary *s, const track *t)
+{
+    const track_counts *c = &t->counts;
+    const double duration_s = track_duration_s(t);
+    if (t->samples_n > 1) {
+        add_row(s, "track", "%s: %zu samples, %.3f s, %.1f a second", t->path, t->samples_n, duration_s,
+                (double)(t->samples_n - 1) / duration_s);
+    } else {
+        add_row(s, "track", "%s: a single sample", t->path);
+    }
+    summary_text list = "";
+    add_count(list, c->zero_quaternions, "zero quaternion dropped", "zero quaternions dropped");
+    add_count(list, c->repeated_times, "repeated time dropped", "repeated times dropped");
+    add_count(list, c->too_fast, "sample too fast dropped", "samples too fast dropped");
+    add_count(list, c->not_unit, "quaternion normalised", "quaternions normalised");
+    add_count(list, c->sign_flips, "sign flip", "sign flips");
+    add_count(list, c->gaps, "gap", "gaps");
+    add_count(list, c->jumps, "jump", "jumps");
+    add_row(s, "oddities", "%s", *list == '\0' ? "none" : list);
+}
+
+static double length_of(const rod_params *p)
+{
+    double length_m = 0.0;
+    for (int i = 0; i < p->links_n; i++) {
+        length_m += (double)p->length_m[i];
+    }
+    return length_m;
+}
+
+static void warn(summary *s, const replay *r)
+{
+    const track_counts *c = &r->source->counts;
+    const double resolving_hz = (double)rod_params_resolving_rate_hz(&r->params);
+    if (resolving_hz > r->rate_hz * 1.0001) {
+        add_warning(s, "under-resolved: the stiffest joint swings faster than once in six ticks; "
+                       "--rate %.0f would do, or less stiffness",
+                    ceil(resolving_hz));
+    }
+    double share = 0.0;
+    int joint = 0;
+    for (int i = 0; i < r->params.links_n; i++) {
+        if (r->joints[i].stop_share > share) {
+            share = r->joints[i].stop_share;
+            joint = i + 1;
+        }
+    }
+    if (share > 0.0) {
+        add_warning(s, "joint %d is on its stop %.2g %% of the time; a higher spring keeps it off", joint,
+                    100.0 * share);
+    }
+    if (c->jumps > 0) {
+        add_warning(s, "%ld jump%s no hand makes (over 1 cm at more than 500 m/s^2), first at line %ld; "
+                       "--max-speed 15 drops the worst",
+                    c->jumps, c->jumps == 1 ? "" : "s", c->first_jump_line);
+    }
+    if (c->gaps > 0) {
+        add_warning(s, "%ld gap%s over 0.25 s: the pose is held and the rod restarts straight", c->gaps,
+                    c->gaps == 1 ? "" : "s");
+    }
+}
+
+void summary_make(const replay *r, const char *preset, summary *s)
+{
+    *s = (summary){0};
+    const rod_params *p = &r->params;
+    describe_track(s, r->source);
+    add_row(s, "rod", "%s: %d links, %.3g m, %s, %s", preset != NULL ? preset : "own parameters", p->links_n,
+            length_of(p), rod_field_find("model")->choices[p->model],
+            rod_field_find("scheme")->choices[p->scheme]);
+    add_row(s, "steps", "%ld at %g Hz%s", r->ticks_n, r->rate_hz, r->restarts > 0 ? ", restarted after gaps" : "");
+    add_row(s, "a step", "%.2f us (median), %.2f us (p99), %.1f us (max)", r->step_median_us, r->step_p99_us,
+            r->step_max_us);
+    if (r->lag_frequency_hz > 0.0) {
+        add_row(s, "lags at", "%.2f Hz, where joint 1 swings most", r->lag_frequency_hz);
+    }
+    add_row(s, "hash", "%016" PRIx64, r->hash);
+    warn(s, r);
+}
+
+static void print_joints(const replay *r, FILE *out)
+{
+    fprintf(out, "joint      peak theta, phi        rms theta, phi     lag       on stop\n");
+    for (int i = 0; i < r->params.links_n; i++) {
+        const replay_joint *j = &r->joints[i];
+        fprintf(out, "%5d  %8.4f %8.4f rad  %8.4f %8.4f rad", i + 1, j->peak_rad[0], j->peak_rad[1],
+                j->rms_rad[0], j->rms_rad[1]);
+        if (j->lag_known) {
+            fprintf(out, "  %6.1f deg", j->lag_deg);
+        } else {
+            fprintf(out, "       -    ");
+        }
+        fprintf(out, "  %5.2f %%\n", 100.0 * j->stop_share);
+    }
+}
+
+void summary_print(const replay *r, const char *preset, FILE *out)
+{
+    summary s;
+    summary_make(r, preset, &s);
+    for (int i = 0; i < s.rows_n; i++) {
+        if (i == s.rows_n - 1) { /* the table stands before the hash, which is looked for last */
+            print_joints(r, out);
+            for (int w = 0; w < s.warnings_n; w++) {
+                fprintf(out, "warning    %s\n", s.warnings[w]);
+            }
+        }
+        fprintf(out, "%-10s %s\n", s.labels[i], s.values[i]);
+    }
+}
