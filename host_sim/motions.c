@@ -34,9 +34,11 @@ static rod_pose circular(int sample)
 
 static rod_pose linear(int sample)
 {
-    static const vec3 CORNERS[] = {
-        {-0.25f, 0.0f, 0.0f}, {0.25f, 0.0f, 0.0f}, {-0.25f, 0.0f, 0.0f}, {0.25f, 0.0f, 0.0f},
-        {-0.25f, 0.0f, 0.0f}};
+    static const vec3 CORNERS[] = {{-0.25f, 0.0f, 0.0f},
+                                   {0.25f, 0.0f, 0.0f},
+                                   {-0.25f, 0.0f, 0.0f},
+                                   {0.25f, 0.0f, 0.0f},
+                                   {-0.25f, 0.0f, 0.0f}};
     const vec3 p = along_corners(CORNERS, 4, (float)sample / (float)(LINEAR_N - 1));
     return (rod_pose){p, tilted(1.2f * p.x, 0.0f)};
 }
@@ -60,8 +62,9 @@ static rod_pose shaking(int sample)
     const float phase = 2.0f * TRIG_PI * 3.0f * (float)sample / (float)MOTION_RATE_HZ;
     const trig_pair side = trig_sincos(phase);
     const trig_pair slow = trig_sincos(0.31f * phase);
-    return (rod_pose){{0.08f * swell * side.sin, 0.03f * swell * slow.sin, 0.02f * swell * slow.cos},
-                      tilted(0.35f * swell * side.sin, -0.2f * swell * slow.sin)};
+    return (rod_pose){
+        {0.08f * swell * side.sin, 0.03f * swell * slow.sin, 0.02f * swell * slow.cos},
+        tilted(0.35f * swell * side.sin, -0.2f * swell * slow.sin)};
 }
 
 static rod_pose star(int sample)
@@ -79,7 +82,8 @@ static rod_pose star(int sample)
 const motion motions[MOTIONS_N] = {
     {"circular", "one turn of a 0.15 m circle, the hand kept upright", CIRCULAR_N, circular},
     {"linear", "0.5 m to and fro, twice", LINEAR_N, linear},
-    {"rectangular", "round a 0.4 by 0.3 m rectangle, resting at the corners", RECTANGULAR_N, rectangular},
+    {"rectangular", "round a 0.4 by 0.3 m rectangle, resting at the corners", RECTANGULAR_N,
+     rectangular},
     {"shaking", "shaken from the wrist at 3 Hz, growing and dying away", SHAKING_N, shaking},
     {"star", "a five-pointed star of 0.2 m radius", STAR_N, star},
 };

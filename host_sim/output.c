@@ -89,10 +89,9 @@ int output_close(output *out, bool keep)
         forget(out->partial);
         free(out->partial);
     }
-    const int result = keep && !written
-                           ? sim_complain("%s: cannot be written: %s", out->path,
-                                          errno == 0 ? "write error" : strerror(errno))
-                           : SIM_OK;
+    const int result = keep && !written ? sim_complain("%s: cannot be written: %s", out->path,
+                                                       errno == 0 ? "write error" : strerror(errno))
+                                        : SIM_OK;
     *out = (output){0};
     return result;
 }

@@ -8,10 +8,9 @@
 
 enum { OPTION_PRESET = 1, OPTION_SET, OPTION_LIST };
 
-static const char EXAMPLES[] =
-    "  limber-sim params --preset whip > my-whip.ini\n"
-    "  limber-sim params --preset foil --set links=20 --set spring=400\n"
-    "  limber-sim params --list\n";
+static const char EXAMPLES[] = "  limber-sim params --preset whip > my-whip.ini\n"
+                               "  limber-sim params --preset foil --set links=20 --set spring=400\n"
+                               "  limber-sim params --list\n";
 
 static int run(poptContext context, params_text *text)
 {
@@ -39,13 +38,15 @@ static int run(poptContext context, params_text *text)
         }
     }
     if (poptPeekArg(context) != NULL) {
-        return sim_complain("params: unexpected '%s'; try limber-sim params --help", poptPeekArg(context));
+        return sim_complain("params: unexpected '%s'; try limber-sim params --help",
+                            poptPeekArg(context));
     }
     rod_params params;
     const int result = params_text_resolve(text, rate_hz, &params);
     if (result == SIM_OK) {
         if (text->preset != NULL) {
-            snprintf(title, sizeof title, "limber rod: %s, %s", text->preset->name, text->preset->what);
+            snprintf(title, sizeof title, "limber rod: %s, %s", text->preset->name,
+                     text->preset->what);
         }
         params_text_write_ini(&params, title, stdout);
     }
@@ -56,7 +57,8 @@ int sim_params_command(int argc, const char **argv)
 {
     const struct poptOption table[] = {
         {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET, "start from a preset", "NAME"},
-        {"set", 's', POPT_ARG_STRING, NULL, OPTION_SET, "change a key; as often as you like", "KEY=VALUE"},
+        {"set", 's', POPT_ARG_STRING, NULL, OPTION_SET, "change a key; as often as you like",
+         "KEY=VALUE"},
         {"list", 'l', POPT_ARG_NONE, NULL, OPTION_LIST, "list the presets", NULL},
         OPTIONS_END,
     };

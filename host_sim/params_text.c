@@ -74,8 +74,8 @@ static int read_value(const rod_field *field, const char *origin, const char *wo
     *value = (float)number;
     /* the bounds are floats; a number that rounds to one is meant to be it */
     if (!(*value >= field->min && *value <= field->max)) {
-        return sim_complain("%s: %s = %.40s: out of bounds, must be %g ... %g%s%s", origin, field->name,
-                            word, (double)field->min, (double)field->max,
+        return sim_complain("%s: %s = %.40s: out of bounds, must be %g ... %g%s%s", origin,
+                            field->name, word, (double)field->min, (double)field->max,
                             *field->unit == '\0' ? "" : " ", field->unit);
     }
     if (field->kind == ROD_FIELD_COUNT_OF && fabs(number - round(number)) > 0.0) {
@@ -86,7 +86,8 @@ static int read_value(const rod_field *field, const char *origin, const char *wo
 
 /* Takes a text of one or more values, separated by commas or blanks; appends where `more` says that
  * the line continues the one before. */
-static int take(params_text *text, const char *origin, const char *key, const char *value, bool more)
+static int take(params_text *text, const char *origin, const char *key, const char *value,
+                bool more)
 {
     const rod_field *field = rod_field_find(key);
     if (field == NULL || !is_settable(field)) {
@@ -149,9 +150,10 @@ static char *next_ini_line(char *buffer, int size, void *context)
     reading->line++;
     reading->continued = isspace((unsigned char)*buffer);
     if (strchr(buffer, '\n') == NULL && getc(reading->file) != EOF) {
-        reading->result = sim_complain("%s:%ld: longer than %d characters; go on with the list on an "
-                                       "indented line",
-                                       reading->path, reading->line, size - 2);
+        reading->result =
+            sim_complain("%s:%ld: longer than %d characters; go on with the list on an "
+                         "indented line",
+                         reading->path, reading->line, size - 2);
         return NULL;
     }
     return buffer;
@@ -168,8 +170,8 @@ static int take_from_ini(void *context, const char *section, const char *name, c
     reading->result =
         strcmp(section, "rod") == 0
             ? take(reading->text, origin, name, value, reading->continued)
-            : sim_complain("%s: '%.40s' stands in section [%.40s]; limber reads only [rod]", origin, name,
-                           section);
+            : sim_complain("%s: '%.40s' stands in section [%.40s]; limber reads only [rod]", origin,
+                           name, section);
     return reading->result == SIM_OK;
 }
 
@@ -198,11 +200,12 @@ static int explain(const params_text *text, const rod_refusal *why, const rod_pa
 {
     if (why->error == ROD_E_OVERDAMPED) {
         const params_entry *damper = &text->entries[index_of(rod_field_find("damper"))];
-        return sim_complain("%s: damper of joint %d is %g N m s: with its inertia and drag at %g Hz at "
-                            "most %g is allowed (2 inertia / tick - drag); raise the inertia or --rate, "
-                            "or damp less",
-                            damper->values_n > 0 ? damper->origin : "rod", why->joint + 1,
-                            (double)why->value, 1.0 / (double)params->tick_s, (double)why->max);
+        return sim_complain(
+            "%s: damper of joint %d is %g N m s: with its inertia and drag at %g Hz at "
+            "most %g is allowed (2 inertia / tick - drag); raise the inertia or --rate, "
+            "or damp less",
+            damper->values_n > 0 ? damper->origin : "rod", why->joint + 1, (double)why->value,
+            1.0 / (double)params->tick_s, (double)why->max);
     }
     if (why->field != NULL && strcmp(why->field->name, "tick") == 0) {
         return sim_complain("--rate: a tick of %g s is out of bounds, must be %g ... %g Hz",
@@ -258,14 +261,16 @@ static void write_number(float value, FILE *out)
 
 static void write_field(const rod_field *field, const rod_params *params, FILE *out)
 {
-    fprintf(out, "\n# %s%s%s%s\n", field->what, *field->symbol == '\0' ? "" : " (paper: ", field->symbol,
+    fprintf(out, "\n# %s%s%s%s\n", field->what,
+            *field->symbol == '\0' ? "" : " (paper: ", field->symbol,
             *field->symbol == '\0' ? "" : ")");
     if (field->kind == ROD_FIELD_CHOICE) {
         fprintf(out, "# one of:");
         for (int i = 0; i <= (int)field->max; i++) {
             fprintf(out, " %s", field->choices[i]);
         }
-        fprintf(out, "\n%s = %s\n", field->name, field->choices[(int)rod_field_get(field, params, 0)]);
+        fprintf(out, "\n%s = %s\n", field->name,
+                field->choices[(int)rod_field_get(field, params, 0)]);
         return;
     }
     fprintf(out, "# %g ... %g%s%s%s\n%s =", (double)field->min, (double)field->max,
@@ -274,7 +279,9 @@ static void write_field(const rod_field *field, const rod_params *params, FILE *
     int values_n = field->kind == ROD_FIELD_PER_JOINT ? params->links_n : 1;
     bool same = true;
     for (int joint = 1; joint < values_n; joint++) {
-        same = same && !(fabsf(rod_field_get(field, params, joint) - rod_field_get(field, params, 0)) > 0.0f);
+        same =
+            same &&
+            !(fabsf(rod_field_get(field, params, joint) - rod_field_get(field, params, 0)) > 0.0f);
     }
     values_n = same ? 1 : values_n;
     for (int joint = 0; joint < values_n; joint++) {

@@ -73,7 +73,8 @@ static int run_ticks(replay *r, rod *rod, float *step_us)
         const rod_error error = rod_step(rod, &tick->base);
         step_us[n] = (float)fmax(0.0, now_us() - start_us - clock_us);
         if (error != ROD_OK) {
-            return sim_give_up("tick %ld, %.6f s: %s", n, (double)n / r->rate_hz, rod_error_text(error));
+            return sim_give_up("tick %ld, %.6f s: %s", n, (double)n / r->rate_hz,
+                               rod_error_text(error));
         }
         float *row = r->angles_rad + (size_t)n * (size_t)values_n;
         memcpy(row, rod_angles(rod), (size_t)values_n * sizeof *row);
@@ -162,7 +163,10 @@ static void find_lags(replay *r)
             imaginary += first[1] * own[0] - first[0] * own[1];
         }
         r->joints[joint].lag_known = hypot(real, imaginary) > 1e-12 * samples_n * samples_n;
-        r->joints[joint].lag_deg = atan2(imaginary, real) * 180.0 / M_PI;
+        const double before = joint > 0 ? r->joints[joint - 1].lag_deg : 0.0;
+        const double lag = atan2(imaginary, real) * 180.0 / M_PI;
+        r->joints[joint].lag_deg =
+            lag + 360.0 * round((before - lag) / 360.0); /* grows along the rod */
     }
 }
 
@@ -172,10 +176,10 @@ int replay_run(const track *source, const rod_params *params, double rate_hz, re
     const double ticks = track_ticks_count(source, rate_hz);
     const double values = ticks * 2.0 * params->links_n;
     if (!(values <= MOST_VALUES)) {
-        return sim_complain("%s: %.0f s at %g Hz make %.3g ticks of %d joints, too many to keep (at most "
-                            "%.0e angles); lower --rate or cut the track",
-                            source->path, track_duration_s(source), rate_hz, ticks, params->links_n,
-                            MOST_VALUES);
+        return sim_complain(
+            "%s: %.0f s at %g Hz make %.3g ticks of %d joints, too many to keep (at most "
+            "%.0e angles); lower --rate or cut the track",
+            source->path, track_duration_s(source), rate_hz, ticks, params->links_n, MOST_VALUES);
     }
     out->ticks_n = (long)ticks;
     out->ticks = malloc((size_t)out->ticks_n * sizeof *out->ticks);
@@ -219,7 +223,8 @@ void replay_nodes(const replay *r, long tick, double nodes_m[][3])
     rod_joint angles[ROD_MAX_LINKS];
     vec3 nodes[ROD_MAX_LINKS + 1];
     memcpy(angles, replay_angles(r, tick), (size_t)links_n * sizeof *angles);
-    kinematics_nodes(&r->ticks[tick].base, (const rod_joint *)angles, r->params.length_m, links_n, nodes);
+    kinematics_nodes(&r->ticks[tick].base, (const rod_joint *)angles, r->params.length_m, links_n,
+                     nodes);
     const double *origin = r->source->origin_m;
     for (int i = 0; i <= links_n; i++) {
         nodes_m[i][0] = origin[0] + (double)nodes[i].x;

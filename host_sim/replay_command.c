@@ -14,16 +14,30 @@
 #include "sim.h"
 #include "summary.h"
 
-enum { OPTION_PRESET = 1, OPTION_PARAMS, OPTION_SET, OPTION_MODEL, OPTION_RATE, OPTION_UP, OPTION_SCALE,
-       OPTION_MAX_SPEED, OPTION_LEFT_HANDED, OPTION_ANGLES, OPTION_NODES, OPTION_REPORT, OPTION_CAPSULE,
-       OPTION_EXPECT_HASH };
+enum {
+    OPTION_PRESET = 1,
+    OPTION_PARAMS,
+    OPTION_SET,
+    OPTION_MODEL,
+    OPTION_RATE,
+    OPTION_UP,
+    OPTION_SCALE,
+    OPTION_MAX_SPEED,
+    OPTION_LEFT_HANDED,
+    OPTION_ANGLES,
+    OPTION_NODES,
+    OPTION_REPORT,
+    OPTION_CAPSULE,
+    OPTION_EXPECT_HASH
+};
 
 static const char EXAMPLES[] =
     "  limber-sim replay build/tracks/shaking.txt --preset whip --report whip.html\n"
     "  limber-sim replay hand.csv --params my-rod.ini --set spring=400 --angles angles.csv\n"
     "  limber-sim replay unity.txt --up y --left-handed --rate 500\n"
     "  limber-sim replay hand.txt --preset foil --expect-hash 0123456789abcdef   # in CI\n\n"
-    "Tracks: TUM (timestamp tx ty tz qx qy qz qw) or CSV with named columns, EuRoC's included; s, m.\n"
+    "Tracks: TUM (timestamp tx ty tz qx qy qz qw) or CSV with named columns, EuRoC's included; s, "
+    "m.\n"
     "Exit codes: 0 fine, 1 the hash differs, 2 bad input, 3 internal failure\n";
 
 typedef struct {
@@ -48,7 +62,8 @@ static int take_number(const char *option, const char *text, double min, double 
 static int take_hash(choices *c, const char *text)
 {
     if (strlen(text) != 16 || strspn(text, "0123456789abcdefABCDEF") != 16) {
-        return sim_complain("--expect-hash %.40s: must be the 16 hexadecimal digits that replay prints", text);
+        return sim_complain(
+            "--expect-hash %.40s: must be the 16 hexadecimal digits that replay prints", text);
     }
     c->expect = true;
     c->expected_hash = strtoull(text, NULL, 16);
@@ -118,7 +133,8 @@ static int take_options(poptContext context, choices *c, bool *help)
     char *ini_path = NULL;
     choices pending = *c; /* what --set and --preset say, kept until the file has been read */
     int result = SIM_OK;
-    for (int option; result == SIM_OK && (option = options_next(context, "replay", EXAMPLES)) != 0;) {
+    for (int option;
+         result == SIM_OK && (option = options_next(context, "replay", EXAMPLES)) != 0;) {
         if (option < 0) {
             result = SIM_BAD_INPUT;
         } else if (option == OPTION_HELP) {
@@ -126,15 +142,17 @@ static int take_options(poptContext context, choices *c, bool *help)
             break;
         } else {
             char *text = poptGetOptArg(context);
-            result = option == OPTION_PARAMS ? take_path(&ini_path, text) : take_option(&pending, option, text);
+            result = option == OPTION_PARAMS ? take_path(&ini_path, text)
+                                             : take_option(&pending, option, text);
             free(text);
         }
     }
     if (result == SIM_OK && !*help && ini_path != NULL) {
         params_text file = {0};
         if (pending.params.preset != NULL) {
-            result = sim_complain("--params and --preset: give one of them; limber-sim params --preset NAME "
-                                  "prints a preset as a file to edit");
+            result = sim_complain(
+                "--params and --preset: give one of them; limber-sim params --preset NAME "
+                "prints a preset as a file to edit");
         } else {
             result = params_text_read_ini(&file, ini_path);
         }
@@ -190,7 +208,8 @@ static int replay_track(const choices *c, const char *path)
                 printf("report     %s\n", c->report_path);
             }
             if (c->expect && r.hash != c->expected_hash) {
-                fprintf(stderr, "limber-sim: the hash differs: %016" PRIx64 ", expected %016" PRIx64 "\n",
+                fprintf(stderr,
+                        "limber-sim: the hash differs: %016" PRIx64 ", expected %016" PRIx64 "\n",
                         r.hash, c->expected_hash);
                 result = SIM_HASH_DIFFERS;
             }
@@ -204,20 +223,31 @@ static int replay_track(const choices *c, const char *path)
 int sim_replay_command(int argc, const char **argv)
 {
     const struct poptOption table[] = {
-        {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET, "a ready-made rod; limber-sim params --list", "NAME"},
+        {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET,
+         "a ready-made rod; limber-sim params --list", "NAME"},
         {"params", 'f', POPT_ARG_STRING, NULL, OPTION_PARAMS, "a parameter file", "FILE.ini"},
-        {"set", 's', POPT_ARG_STRING, NULL, OPTION_SET, "change one parameter; as often as you like", "KEY=VALUE"},
+        {"set", 's', POPT_ARG_STRING, NULL, OPTION_SET,
+         "change one parameter; as often as you like", "KEY=VALUE"},
         {"model", 'm', POPT_ARG_STRING, NULL, OPTION_MODEL, "the mathematics: contour", "NAME"},
         {"rate", 'r', POPT_ARG_STRING, NULL, OPTION_RATE, "ticks a second (1000)", "HZ"},
-        {"up", 0, POPT_ARG_STRING, NULL, OPTION_UP, "the track's axis that points up: y or z (z)", "AXIS"},
-        {"scale", 0, POPT_ARG_STRING, NULL, OPTION_SCALE, "metres per unit of the track's positions (1)", "METRES"},
-        {"left-handed", 0, POPT_ARG_NONE, NULL, OPTION_LEFT_HANDED, "the track's axes are left-handed (Unity): mirror x", NULL},
-        {"max-speed", 0, POPT_ARG_STRING, NULL, OPTION_MAX_SPEED, "drop samples that would need more m/s than this", "SPEED"},
-        {"angles", 'a', POPT_ARG_STRING, NULL, OPTION_ANGLES, "write joint angles: t,theta1,phi1,... s, rad", "OUT.csv"},
-        {"nodes", 'n', POPT_ARG_STRING, NULL, OPTION_NODES, "write node positions: t,x0,y0,z0,x1,... s, m", "OUT.csv"},
-        {"report", 0, POPT_ARG_STRING, NULL, OPTION_REPORT, "write one HTML page with plots and a 3-D view", "OUT.html"},
-        {"capsule", 0, POPT_ARG_STRING, NULL, OPTION_CAPSULE, "write parameters and the float32 pose of every tick", "OUT"},
-        {"expect-hash", 'e', POPT_ARG_STRING, NULL, OPTION_EXPECT_HASH, "exit 1 unless the angles have this hash", "HASH"},
+        {"up", 0, POPT_ARG_STRING, NULL, OPTION_UP, "the track's axis that points up: y or z (z)",
+         "AXIS"},
+        {"scale", 0, POPT_ARG_STRING, NULL, OPTION_SCALE,
+         "metres per unit of the track's positions (1)", "METRES"},
+        {"left-handed", 0, POPT_ARG_NONE, NULL, OPTION_LEFT_HANDED,
+         "the track's axes are left-handed (Unity): mirror x", NULL},
+        {"max-speed", 0, POPT_ARG_STRING, NULL, OPTION_MAX_SPEED,
+         "drop samples that would need more m/s than this", "SPEED"},
+        {"angles", 'a', POPT_ARG_STRING, NULL, OPTION_ANGLES,
+         "write joint angles: t,theta1,phi1,... s, rad", "OUT.csv"},
+        {"nodes", 'n', POPT_ARG_STRING, NULL, OPTION_NODES,
+         "write node positions: t,x0,y0,z0,x1,... s, m", "OUT.csv"},
+        {"report", 0, POPT_ARG_STRING, NULL, OPTION_REPORT,
+         "write one HTML page with plots and a 3-D view", "OUT.html"},
+        {"capsule", 0, POPT_ARG_STRING, NULL, OPTION_CAPSULE,
+         "write parameters and the float32 pose of every tick", "OUT"},
+        {"expect-hash", 'e', POPT_ARG_STRING, NULL, OPTION_EXPECT_HASH,
+         "exit 1 unless the angles have this hash", "HASH"},
         OPTIONS_END,
     };
     choices c = {.track = {.scale = 1.0}, .rate_hz = 1000.0};

@@ -42,7 +42,8 @@ int replay_write_nodes(const replay *r, const char *path)
         replay_nodes(r, n, nodes_m);
         fprintf(out.file, "\n%.9g", (double)n / r->rate_hz);
         for (int node = 0; node <= r->params.links_n; node++) {
-            fprintf(out.file, ",%.9g,%.9g,%.9g", nodes_m[node][0], nodes_m[node][1], nodes_m[node][2]);
+            fprintf(out.file, ",%.9g,%.9g,%.9g", nodes_m[node][0], nodes_m[node][1],
+                    nodes_m[node][2]);
         }
     }
     fprintf(out.file, "\n");

@@ -37,7 +37,8 @@ static char *base64(const float_list *list)
     char *out = text;
     for (size_t i = 0; i < list->bytes_n; i += 3) {
         const size_t left = list->bytes_n - i;
-        const unsigned bits = (unsigned)list->bytes[i] << 16 | (left > 1 ? (unsigned)list->bytes[i + 1] << 8 : 0) |
+        const unsigned bits = (unsigned)list->bytes[i] << 16 |
+                              (left > 1 ? (unsigned)list->bytes[i + 1] << 8 : 0) |
                               (left > 2 ? (unsigned)list->bytes[i + 2] : 0);
         *out++ = DIGITS[bits >> 18];
         *out++ = DIGITS[bits >> 12 & 63];
@@ -76,8 +77,8 @@ static void append_attitude(float_list *list, const replay *r, long tick)
     append(list, q.w);
 }
 
-static void add_frames(cJSON *page, const char *name, const replay *r, long frame_step, int values_n,
-                       void (*append_frame)(float_list *, const replay *, long))
+static void add_frames(cJSON *page, const char *name, const replay *r, long frame_step,
+                       int values_n, void (*append_frame)(float_list *, const replay *, long))
 {
     const size_t frames_n = (size_t)((r->ticks_n - 1) / frame_step + 1);
     float_list list = {malloc(frames_n * (size_t)values_n * sizeof(float)), 0};
@@ -160,7 +161,8 @@ static cJSON *make_page(const replay *r, const char *preset)
     cJSON_AddStringToObject(page, "track", r->source->path);
     cJSON_AddStringToObject(page, "model", rod_field_find("model")->choices[p->model]);
     cJSON_AddStringToObject(page, "scheme", rod_field_find("scheme")->choices[p->scheme]);
-    cJSON_AddItemToObject(page, "preset", preset != NULL ? cJSON_CreateString(preset) : cJSON_CreateNull());
+    cJSON_AddItemToObject(page, "preset",
+                          preset != NULL ? cJSON_CreateString(preset) : cJSON_CreateNull());
     cJSON_AddNumberToObject(page, "rate_hz", r->rate_hz);
     cJSON_AddNumberToObject(page, "steps", (double)r->ticks_n);
     cJSON_AddNumberToObject(page, "links", p->links_n);

@@ -32,7 +32,8 @@ int main(int argc, char **argv)
     if (argc < 2) {
         return sim_complain("no command given; try limber-sim --help");
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+        strcmp(argv[1], "help") == 0) {
         print_help();
         return SIM_OK;
     }

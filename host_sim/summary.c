@@ -39,8 +39,8 @@ static void describe_track(summary *s, const track *t)
     const track_counts *c = &t->counts;
     const double duration_s = track_duration_s(t);
     if (t->samples_n > 1) {
-        add_row(s, "track", "%s: %zu samples, %.3f s, %.1f a second", t->path, t->samples_n, duration_s,
-                (double)(t->samples_n - 1) / duration_s);
+        add_row(s, "track", "%s: %zu samples, %.3f s, %.1f a second", t->path, t->samples_n,
+                duration_s, (double)(t->samples_n - 1) / duration_s);
     } else {
         add_row(s, "track", "%s: a single sample", t->path);
     }
@@ -69,8 +69,9 @@ static void warn(summary *s, const replay *r)
     const track_counts *c = &r->source->counts;
     const double resolving_hz = (double)rod_params_resolving_rate_hz(&r->params);
     if (resolving_hz > r->rate_hz * 1.0001) {
-        add_warning(s, "under-resolved: the stiffest joint swings faster than once in six ticks; "
-                       "--rate %.0f would do, or less stiffness",
+        add_warning(s,
+                    "under-resolved: the stiffest joint swings faster than once in six ticks; "
+                    "--rate %.0f would do, or less stiffness",
                     ceil(resolving_hz));
     }
     double share = 0.0;
@@ -82,17 +83,19 @@ static void warn(summary *s, const replay *r)
         }
     }
     if (share > 0.0) {
-        add_warning(s, "joint %d is on its stop %.2g %% of the time; a higher spring keeps it off", joint,
-                    100.0 * share);
+        add_warning(s, "joint %d is on its stop %.2g %% of the time; a higher spring keeps it off",
+                    joint, 100.0 * share);
     }
     if (c->jumps > 0) {
-        add_warning(s, "%ld jump%s no hand makes (over 1 cm at more than 500 m/s^2), first at line %ld; "
-                       "--max-speed 15 drops the worst",
+        add_warning(s,
+                    "%ld jump%s no hand makes (over 1 cm off its way at over 1000 m/s^2), first at "
+                    "line %ld; "
+                    "--max-speed 15 drops the worst",
                     c->jumps, c->jumps == 1 ? "" : "s", c->first_jump_line);
     }
     if (c->gaps > 0) {
-        add_warning(s, "%ld gap%s over 0.25 s: the pose is held and the rod restarts straight", c->gaps,
-                    c->gaps == 1 ? "" : "s");
+        add_warning(s, "%ld gap%s over 0.25 s: the pose is held and the rod restarts straight",
+                    c->gaps, c->gaps == 1 ? "" : "s");
     }
 }
 
@@ -101,12 +104,13 @@ void summary_make(const replay *r, const char *preset, summary *s)
     *s = (summary){0};
     const rod_params *p = &r->params;
     describe_track(s, r->source);
-    add_row(s, "rod", "%s: %d links, %.3g m, %s, %s", preset != NULL ? preset : "own parameters", p->links_n,
-            length_of(p), rod_field_find("model")->choices[p->model],
+    add_row(s, "rod", "%s: %d links, %.3g m, %s, %s", preset != NULL ? preset : "own parameters",
+            p->links_n, length_of(p), rod_field_find("model")->choices[p->model],
             rod_field_find("scheme")->choices[p->scheme]);
-    add_row(s, "steps", "%ld at %g Hz%s", r->ticks_n, r->rate_hz, r->restarts > 0 ? ", restarted after gaps" : "");
-    add_row(s, "a step", "%.2f us (median), %.2f us (p99), %.1f us (max)", r->step_median_us, r->step_p99_us,
-            r->step_max_us);
+    add_row(s, "steps", "%ld at %g Hz%s", r->ticks_n, r->rate_hz,
+            r->restarts > 0 ? ", restarted after gaps" : "");
+    add_row(s, "a step", "%.2f us (median), %.2f us (p99), %.1f us (max)", r->step_median_us,
+            r->step_p99_us, r->step_max_us);
     if (r->lag_frequency_hz > 0.0) {
         add_row(s, "lags at", "%.2f Hz, where joint 1 swings most", r->lag_frequency_hz);
     }

@@ -96,21 +96,20 @@ static void clean(track *t, const track_options *options)
     }
 }
 
+/* Further from where the hand was heading than a hand can swerve. */
 static bool is_jump(const track_sample *s, size_t i)
 {
     const double dt_s = s[i].t_s - s[i - 1].t_s;
-    if (distance_m(&s[i], &s[i - 1]) < 0.01) {
-        return false;
-    }
-    double change_squared = 0.0;
+    double change_squared = 0.0; /* of velocity */
     for (int axis = 0; axis < 3; axis++) {
         const double now = (s[i].position_m[axis] - s[i - 1].position_m[axis]) / dt_s;
-        const double before =
-            i < 2 ? 0.0
-                  : (s[i - 1].position_m[axis] - s[i - 2].position_m[axis]) / (s[i - 1].t_s - s[i - 2].t_s);
+        const double before = i < 2 ? 0.0
+                                    : (s[i - 1].position_m[axis] - s[i - 2].position_m[axis]) /
+                                          (s[i - 1].t_s - s[i - 2].t_s);
         change_squared += (now - before) * (now - before);
     }
-    return sqrt(change_squared) > 500.0 * dt_s;
+    const double change = sqrt(change_squared);
+    return change * dt_s > 0.01 && change > 1000.0 * dt_s;
 }
 
 static void count_oddities(track *t)
@@ -150,10 +149,10 @@ int track_read(const char *path, const track_options *options, track *out)
         for (int axis = 0; axis < 3; axis++) {
             const double metres = out->samples[i].position_m[axis];
             if (!(fabs(metres - out->samples[0].position_m[axis]) <= 900.0)) {
-                result = sim_complain("%s:%ld: %.4g m away from the first sample, at most 900 m are allowed; "
-                                      "if the file is not in metres, give --scale",
-                                      path, out->samples[i].line,
-                                      fabs(metres - out->samples[0].position_m[axis]));
+                result = sim_complain(
+                    "%s:%ld: %.4g m away from the first sample, at most 900 m are allowed; "
+                    "if the file is not in metres, give --scale",
+                    path, out->samples[i].line, fabs(metres - out->samples[0].position_m[axis]));
                 track_free(out);
                 return result;
             }
@@ -188,7 +187,8 @@ track_ticks track_ticks_start(const track *source, double rate_hz)
 
 /* The pose a share u of the way from a to b: positions linear, quaternions normalised linear the
  * shorter way round. */
-static rod_pose blend(const track_sample *a, const track_sample *b, double u, const double origin_m[3])
+static rod_pose blend(const track_sample *a, const track_sample *b, double u,
+                      const double origin_m[3])
 {
     double p[3], q[4], dot = 0.0, norm = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -201,10 +201,11 @@ static rod_pose blend(const track_sample *a, const track_sample *b, double u, co
         q[i] = (1.0 - u) * a->orientation[i] + (dot < 0.0 ? -u : u) * b->orientation[i];
         norm += q[i] * q[i];
     }
-    norm = 1.0 / sqrt(norm); /* at least sqrt(1/2) long, since the angle between them is at most 90 */
-    return (rod_pose){{(float)p[0], (float)p[1], (float)p[2]},
-                      {(float)(q[0] * norm), (float)(q[1] * norm), (float)(q[2] * norm),
-                       (float)(q[3] * norm)}};
+    norm =
+        1.0 / sqrt(norm); /* at least sqrt(1/2) long, since the angle between them is at most 90 */
+    return (rod_pose){
+        {(float)p[0], (float)p[1], (float)p[2]},
+        {(float)(q[0] * norm), (float)(q[1] * norm), (float)(q[2] * norm), (float)(q[3] * norm)}};
 }
 
 bool track_ticks_next(track_ticks *ticks, track_tick *tick)

@@ -13,7 +13,8 @@
 #include "kinematics.h"
 
 typedef struct {
-    double t_s; /* the file's own time; counted from its first sample where the file has nanoseconds */
+    double
+        t_s; /* the file's own time; counted from its first sample where the file has nanoseconds */
     double position_m[3];
     double orientation[4]; /* x y z w, unit length */
     long line;
@@ -21,9 +22,9 @@ typedef struct {
 
 /* How a file's axes and units become the rod's: metres, right-handed, z up. */
 typedef struct {
-    bool y_up;          /* the file's y is up: (x, y, z) -> (x, -z, y) */
-    bool left_handed;   /* x is mirrored, in the world and in the body, so that +z stays the rod */
-    double scale;       /* metres per unit of the file */
+    bool y_up;        /* the file's y is up: (x, y, z) -> (x, -z, y) */
+    bool left_handed; /* x is mirrored, in the world and in the body, so that +z stays the rod */
+    double scale;     /* metres per unit of the file */
     double max_speed_mps; /* samples that would need more are dropped; 0: none are */
 } track_options;
 
@@ -33,10 +34,10 @@ typedef struct {
     long zero_quaternions; /* dropped */
     long repeated_times;   /* dropped: all but the last */
     long too_fast;         /* dropped, by max_speed_mps */
-    long sign_flips;       /* q to -q between neighbours: harmless, interpolation takes the short way */
-    long not_unit;         /* quaternion more than 1 % off unit length: normalised */
-    long gaps;             /* over 0.25 s: the pose is held, then the rod restarts straight */
-    long jumps;            /* over 1 cm away at more than 500 m/s^2: no hand does that; kept */
+    long sign_flips; /* q to -q between neighbours: harmless, interpolation takes the short way */
+    long not_unit;   /* quaternion more than 1 % off unit length: normalised */
+    long gaps;       /* over 0.25 s: the pose is held, then the rod restarts straight */
+    long jumps;      /* over 1 cm from where the hand was heading, at over 1000 m/s^2; kept */
     long first_jump_line;
 } track_counts;
 

@@ -15,7 +15,8 @@
 enum { VALUES_N = 8, COLUMNS_MAX = 64 };
 enum { T, X, Y, Z, QX, QY, QZ, QW };
 
-static const char *const TUM_NAMES[VALUES_N] = {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+static const char *const TUM_NAMES[VALUES_N] = {"timestamp", "tx", "ty", "tz",
+                                                "qx",        "qy", "qz", "qw"};
 
 /* Names a CSV column may have, without its unit in brackets; EuRoC's come last. */
 static const char *const CSV_NAMES[VALUES_N][6] = {
@@ -132,12 +133,14 @@ static int read_header(reader *r, char *line)
         if (value == T) {
             r->nanoseconds = is_ns;
         }
-        const bool unit_known = *unit == '\0' || (value == T && (is_ns || strcmp(unit, "s") == 0)) ||
+        const bool unit_known = *unit == '\0' ||
+                                (value == T && (is_ns || strcmp(unit, "s") == 0)) ||
                                 (value >= X && value <= Z && strcmp(unit, "m") == 0) || value >= QX;
         if (!unit_known) {
-            return sim_complain("%s:%ld: column '%s' is in %s; times are read in s or ns, positions in m "
-                                "(take the unit away and give --scale)",
-                                r->path, r->line, fields[i], unit);
+            return sim_complain(
+                "%s:%ld: column '%s' is in %s; times are read in s or ns, positions in m "
+                "(take the unit away and give --scale)",
+                r->path, r->line, fields[i], unit);
         }
         /* EuRoC's first headers give the time no unit: it is nanoseconds in all of them */
         if (value == X && strcasecmp(fields[i], "p_rs_r_x") == 0) {
@@ -158,12 +161,12 @@ static int read_number(const reader *r, const char *text, int value, double *num
     char *end;
     *number = strtod(text, &end);
     if (end == text || *end != '\0') {
-        return sim_complain("%s:%ld: %s is not a number: '%.40s'", r->path, r->line, TUM_NAMES[value],
-                            text);
+        return sim_complain("%s:%ld: %s is not a number: '%.40s'", r->path, r->line,
+                            TUM_NAMES[value], text);
     }
     if (!isfinite(*number) || fabs(*number) > 1e18) {
-        return sim_complain("%s:%ld: %s is not a finite, sensible number: '%.40s'", r->path, r->line,
-                            TUM_NAMES[value], text);
+        return sim_complain("%s:%ld: %s is not a finite, sensible number: '%.40s'", r->path,
+                            r->line, TUM_NAMES[value], text);
     }
     return SIM_OK;
 }
@@ -213,13 +216,15 @@ static int read_sample(reader *r, char *line)
     if (n != r->columns_n) {
         return sim_complain("%s:%ld: %d columns where %d are expected (%s)", r->path, r->line,
                             n < 0 ? COLUMNS_MAX + 1 : n, r->columns_n,
-                            r->comma_separated ? "as the header has" : "timestamp tx ty tz qx qy qz qw");
+                            r->comma_separated ? "as the header has"
+                                               : "timestamp tx ty tz qx qy qz qw");
     }
     double values[VALUES_N];
     for (int value = 0; value < VALUES_N; value++) {
         const char *text = fields[r->column[value]];
-        const int result = value == T && r->nanoseconds ? read_nanoseconds(r, text, &values[T])
-                                                        : read_number(r, text, value, &values[value]);
+        const int result = value == T && r->nanoseconds
+                               ? read_nanoseconds(r, text, &values[T])
+                               : read_number(r, text, value, &values[value]);
         if (result != SIM_OK) {
             return result;
         }
@@ -332,8 +337,8 @@ int track_reader_read(const char *path, track_sample **samples, size_t *samples_
     int result = read_stream(&r, file);
     fclose(file);
     if (result == SIM_OK && r.samples_n == 0) {
-        result = sim_complain("%s: no samples in it (expected lines of timestamp tx ty tz qx qy qz qw)",
-                              path);
+        result = sim_complain(
+            "%s: no samples in it (expected lines of timestamp tx ty tz qx qy qz qw)", path);
     }
     if (result != SIM_OK) {
         free(r.samples);

@@ -100,8 +100,8 @@ static bool turn_of_link(const held_link *held, vec3 moved, rod_joint delta_rad)
         ahead > 0.0f ? along + aside * aside / (level_new + ahead) : level_new - level;
     delta_rad[ROD_THETA] =
         level_new_squared < 1e-12f * length_new_squared ? 0.0f : trig_atan2(aside, ahead);
-    delta_rad[ROD_PHI] = trig_atan2(moved.y * phi.cos - level_gain * phi.sin,
-                                    level_new * phi.cos + up * phi.sin);
+    delta_rad[ROD_PHI] =
+        trig_atan2(moved.y * phi.cos - level_gain * phi.sin, level_new * phi.cos + up * phi.sin);
     return true;
 }
 
@@ -149,7 +149,8 @@ void contour_base_motion(const contour *model, const rod_joint *angle_rad, const
 /* b = momentum g - dt^2 K y, with K y as the gradient of the bending energy: every difference is
  * taken once, and what a joint gains from its neighbour the neighbour loses. b[-1] exists too: it
  * takes what joint 1 pulls at the hand. y has a row more than there are joints. */
-static void right_hand_side(const contour *model, const rod_joint *g, const rod_joint *y, rod_joint *b)
+static void right_hand_side(const contour *model, const rod_joint *g, const rod_joint *y,
+                            rod_joint *b)
 {
     rod_joint difference = {y[0][0], y[0][1]}; /* y_i - y_{i-1}; joint 1 couples to angle zero */
     rod_joint moment = {0.0f, 0.0f};           /* eta (second difference) of the row before */

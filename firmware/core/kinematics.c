@@ -23,8 +23,10 @@ vec3 kinematics_direction(const joint_trig *t)
 frame3 kinematics_turn(const frame3 *parent, const joint_trig *t)
 {
     /* about y by theta: x and z turn in their plane ... */
-    const vec3 x = vec3_sub(vec3_scale(parent->x, t->theta.cos), vec3_scale(parent->z, t->theta.sin));
-    const vec3 z = vec3_add(vec3_scale(parent->x, t->theta.sin), vec3_scale(parent->z, t->theta.cos));
+    const vec3 x =
+        vec3_sub(vec3_scale(parent->x, t->theta.cos), vec3_scale(parent->z, t->theta.sin));
+    const vec3 z =
+        vec3_add(vec3_scale(parent->x, t->theta.sin), vec3_scale(parent->z, t->theta.cos));
     /* ... then about the new x by -phi: y and z turn in theirs */
     return (frame3){
         x,
@@ -45,7 +47,8 @@ void kinematics_nodes(const rod_pose *base, const rod_joint *angles_rad, const f
     }
 }
 
-void kinematics_angles(const rod_pose *base, const vec3 *nodes_m, int links_n, rod_joint *angles_rad)
+void kinematics_angles(const rod_pose *base, const vec3 *nodes_m, int links_n,
+                       rod_joint *angles_rad)
 {
     frame3 link = quat_frame(base->orientation);
     for (int i = 0; i < links_n; i++) {

@@ -48,6 +48,7 @@ void kinematics_nodes(const rod_pose *base, const rod_joint *angles_rad, const f
 
 /* The inverse: angles from nodes 0 ... links_n. Where a link points along its parent's +-y, theta is
  * open: the value already in angles_rad is kept. A link of no length keeps both of its angles. */
-void kinematics_angles(const rod_pose *base, const vec3 *nodes_m, int links_n, rod_joint *angles_rad);
+void kinematics_angles(const rod_pose *base, const vec3 *nodes_m, int links_n,
+                       rod_joint *angles_rad);
 
 #endif

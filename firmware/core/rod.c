@@ -125,8 +125,8 @@ static __attribute__((noinline)) rod_error step_with_force(rod *r, const rod_mot
     if (error != ROD_OK) {
         return error;
     }
-    return contour_step(&r->model, &r->state[r->current], &r->state[1 - r->current], &r->motion, now,
-                        (const rod_joint *)torque_nm);
+    return contour_step(&r->model, &r->state[r->current], &r->state[1 - r->current], &r->motion,
+                        now, (const rod_joint *)torque_nm);
 }
 
 rod_error rod_step(rod *r, const rod_pose *base)

@@ -35,7 +35,8 @@ typedef void (*rod_force_fn)(const vec3 *nodes_m, int nodes_n, vec3 *forces_newt
 typedef struct {
     rod_params params;
     contour model;
-    contour_state state[2]; /* a step reads one and writes the other, so a failed one spoils nothing */
+    contour_state
+        state[2]; /* a step reads one and writes the other, so a failed one spoils nothing */
     int current;
     bool started; /* a base pose has been seen */
     rod_pose base;

@@ -9,38 +9,48 @@ static const char *const MODELS[] = {"contour"};
 static const char *const SCHEMES[] = {"midpoint", "paper"};
 
 #define CHOICE(member, name, what, error, names, count)                                            \
-    {name, "", "", what, ROD_FIELD_CHOICE, error, 0.0f, (float)((count)-1), 0.0f, names,           \
-     offsetof(rod_params, member)}
+    {                                                                                              \
+        name, "", "", what, ROD_FIELD_CHOICE, error, 0.0f, (float)((count)-1), 0.0f, names,        \
+            offsetof(rod_params, member)                                                           \
+    }
 #define COUNT_OF(member, name, symbol, what, error, min, max, initial)                             \
-    {name, symbol, "", what, ROD_FIELD_COUNT_OF, error, min, max, initial, NULL,                   \
-     offsetof(rod_params, member)}
+    {                                                                                              \
+        name, symbol, "", what, ROD_FIELD_COUNT_OF, error, min, max, initial, NULL,                \
+            offsetof(rod_params, member)                                                           \
+    }
 #define NUMBER(kind, member, name, symbol, unit, what, error, min, max, initial)                   \
-    {name, symbol, unit, what, kind, error, min, max, initial, NULL, offsetof(rod_params, member)}
+    {                                                                                              \
+        name, symbol, unit, what, kind, error, min, max, initial, NULL,                            \
+            offsetof(rod_params, member)                                                           \
+    }
 
 const rod_field rod_fields[ROD_FIELDS_N] = {
     CHOICE(model, "model", "which mathematics bends the rod", ROD_E_MODEL, MODELS, ROD_MODEL_COUNT),
     CHOICE(scheme, "scheme", "time stepping: midpoint, or the paper's for comparison", ROD_E_SCHEME,
            SCHEMES, ROD_SCHEME_COUNT),
-    COUNT_OF(links_n, "links", "N", "number of links", ROD_E_LINKS, 1.0f, (float)ROD_MAX_LINKS, 4.0f),
+    COUNT_OF(links_n, "links", "N", "number of links", ROD_E_LINKS, 1.0f, (float)ROD_MAX_LINKS,
+             4.0f),
     COUNT_OF(hold_n, "hold", "", "link ends that stay behind when the base moves", ROD_E_HOLD, 1.0f,
              2.0f, 1.0f),
-    NUMBER(ROD_FIELD_SCALAR, tick_s, "tick", "dt", "s", "time step", ROD_E_TICK, 5e-5f, 0.1f, 0.001f),
+    NUMBER(ROD_FIELD_SCALAR, tick_s, "tick", "dt", "s", "time step", ROD_E_TICK, 5e-5f, 0.1f,
+           0.001f),
     NUMBER(ROD_FIELD_PER_JOINT, length_m, "length", "l", "m", "length of each link", ROD_E_LENGTH,
            1e-3f, 10.0f, 0.03f),
     NUMBER(ROD_FIELD_PER_JOINT, inertia, "inertia", "mu", "kg m^2",
            "resists turning in the world: more is slower and swings further", ROD_E_INERTIA, 1e-6f,
            1e3f, 0.2f),
-    NUMBER(ROD_FIELD_PER_JOINT, drag, "drag", "gamma", "N m s", "resists turning in the world, like air",
-           ROD_E_DRAG, 0.0f, 1e4f, 0.0f),
+    NUMBER(ROD_FIELD_PER_JOINT, drag, "drag", "gamma", "N m s",
+           "resists turning in the world, like air", ROD_E_DRAG, 0.0f, 1e4f, 0.0f),
     NUMBER(ROD_FIELD_PER_JOINT, coupling, "coupling", "beta", "N m",
-           "pulls neighbouring joints to one angle: spreads a bend along the rod", ROD_E_COUPLING, 0.0f,
-           1e6f, 100.0f),
+           "pulls neighbouring joints to one angle: spreads a bend along the rod", ROD_E_COUPLING,
+           0.0f, 1e6f, 100.0f),
     NUMBER(ROD_FIELD_PER_JOINT, smoothing, "smoothing", "eta", "N m",
-           "pulls three joints onto a line: rounds the spread off", ROD_E_SMOOTHING, 0.0f, 1e6f, 0.0f),
-    NUMBER(ROD_FIELD_PER_JOINT, spring, "spring", "k", "N m", "pulls each joint straight: stiffness",
-           ROD_E_SPRING, 0.0f, 1e6f, 80.0f),
-    NUMBER(ROD_FIELD_PER_JOINT, damper, "damper", "c", "N m s", "resists bending: takes out ripples",
-           ROD_E_DAMPER, 0.0f, 1e4f, 2.0f),
+           "pulls three joints onto a line: rounds the spread off", ROD_E_SMOOTHING, 0.0f, 1e6f,
+           0.0f),
+    NUMBER(ROD_FIELD_PER_JOINT, spring, "spring", "k", "N m",
+           "pulls each joint straight: stiffness", ROD_E_SPRING, 0.0f, 1e6f, 80.0f),
+    NUMBER(ROD_FIELD_PER_JOINT, damper, "damper", "c", "N m s",
+           "resists bending: takes out ripples", ROD_E_DAMPER, 0.0f, 1e4f, 2.0f),
     NUMBER(ROD_FIELD_PER_JOINT, limit_rad, "limit", "", "rad", "the joint's stop, either side",
            ROD_E_LIMIT, 1e-3f, 1.57f, 1.4f),
 };
@@ -157,11 +167,11 @@ rod_error rod_params_check(const rod_params *params, rod_refusal *refusal)
         }
     }
     for (int joint = 0; joint < params->links_n; joint++) {
-        const float damper_max = 2.0f * params->inertia[joint] / params->tick_s - params->drag[joint];
+        const float damper_max =
+            2.0f * params->inertia[joint] / params->tick_s - params->drag[joint];
         if (params->damper[joint] > damper_max) {
-            return refuse(refusal,
-                          (rod_refusal){ROD_E_OVERDAMPED, rod_field_find("damper"), joint,
-                                        params->damper[joint], 0.0f, damper_max});
+            return refuse(refusal, (rod_refusal){ROD_E_OVERDAMPED, rod_field_find("damper"), joint,
+                                                 params->damper[joint], 0.0f, damper_max});
         }
     }
     return refuse(refusal, (rod_refusal){ROD_OK, NULL, -1, 0.0f, 0.0f, 0.0f});

@@ -33,8 +33,8 @@ typedef enum {
     ROD_E_LIMIT = -13,
     ROD_E_OVERDAMPED = -14, /* (drag + damper) * tick > 2 * inertia: the centred damper would saw */
     ROD_E_PIVOT = -15,      /* the system is not positive definite in float32 */
-    ROD_E_POSE = -16,       /* base pose not finite, beyond 1000 m, or quaternion not of unit length */
-    ROD_E_FORCE = -17,      /* an external force is not finite, or its torque beyond 1e9 N m */
+    ROD_E_POSE = -16,  /* base pose not finite, beyond 1000 m, or quaternion not of unit length */
+    ROD_E_FORCE = -17, /* an external force is not finite, or its torque beyond 1e9 N m */
     ROD_E_NOT_FINITE = -18, /* the step's result is not finite */
 } rod_error;
 
@@ -48,19 +48,25 @@ typedef struct {
     int32_t model;   /* ROD_MODEL_... */
     int32_t scheme;  /* ROD_SCHEME_...: paper is kept for comparison only (MODEL.md) */
     int32_t links_n; /* N */
-    int32_t hold_n;  /* how many link ends stay in the world while the base moves: 1 or 2 (Fig. 6b) */
-    float tick_s;    /* dt */
-    float length_m[ROD_MAX_LINKS];  /* l: link i reaches from node i-1 to node i */
-    float inertia[ROD_MAX_LINKS];   /* mu, kg m^2: resists turning of joint i in the world */
-    float drag[ROD_MAX_LINKS];      /* gamma, N m s: resists turning of joint i in the world */
-    float coupling[ROD_MAX_LINKS];  /* beta, N m: pulls joint i and joint i-1 to one angle (Eq. 7) */
+    int32_t
+        hold_n;   /* how many link ends stay in the world while the base moves: 1 or 2 (Fig. 6b) */
+    float tick_s; /* dt */
+    float length_m[ROD_MAX_LINKS]; /* l: link i reaches from node i-1 to node i */
+    float inertia[ROD_MAX_LINKS];  /* mu, kg m^2: resists turning of joint i in the world */
+    float drag[ROD_MAX_LINKS];     /* gamma, N m s: resists turning of joint i in the world */
+    float coupling[ROD_MAX_LINKS]; /* beta, N m: pulls joint i and joint i-1 to one angle (Eq. 7) */
     float smoothing[ROD_MAX_LINKS]; /* eta, N m: pulls joints i-1, i, i+1 onto a line (Eq. 2) */
     float spring[ROD_MAX_LINKS];    /* k, N m: pulls joint i straight (Eq. 8) */
     float damper[ROD_MAX_LINKS];    /* c, N m s: resists bending of joint i (Eq. 8) */
     float limit_rad[ROD_MAX_LINKS]; /* the joint's stop, either side, for theta and phi alike */
 } rod_params;
 
-typedef enum { ROD_FIELD_CHOICE, ROD_FIELD_COUNT_OF, ROD_FIELD_SCALAR, ROD_FIELD_PER_JOINT } rod_field_kind;
+typedef enum {
+    ROD_FIELD_CHOICE,
+    ROD_FIELD_COUNT_OF,
+    ROD_FIELD_SCALAR,
+    ROD_FIELD_PER_JOINT
+} rod_field_kind;
 
 typedef struct {
     const char *name; /* the key in INI files, on the command line and on the wire */

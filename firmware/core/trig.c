@@ -17,11 +17,10 @@ trig_pair trig_sincos(float angle_rad)
         ((angle_rad - turns * HALF_PI_HIGH) - turns * HALF_PI_MIDDLE) - turns * HALF_PI_LOW;
     const float z = r * r;
 
-    const float s =
-        ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * r + r;
-    const float c = ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) *
-                        z * z -
-                    0.5f * z + 1.0f;
+    const float s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * r + r;
+    const float c =
+        ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z -
+        0.5f * z + 1.0f;
 
     if (!(trig_abs(turns) <= 8192.0f)) { /* far outside, or NaN: the quadrant is unknown */
         return (trig_pair){s, c};
@@ -63,11 +62,10 @@ float trig_atan2(float y, float x)
     }
     const float t = above / below;
     const float z = t * t;
-    const float p =
-        (((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z -
-         3.33329491539e-1f) *
-            z * t +
-        t;
+    const float p = (((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z -
+                     3.33329491539e-1f) *
+                        z * t +
+                    t;
     const float first_quadrant = offset + p;
     const float right_or_left = x < 0.0f ? TRIG_PI - first_quadrant : first_quadrant;
     return y < 0.0f ? -right_or_left : right_or_left;

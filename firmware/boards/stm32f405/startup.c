@@ -20,9 +20,7 @@ int startup_arguments(char ***argv)
 
 /* Before main, with memory ready: where a C library needs waking. */
 __attribute__((weak)) void startup_wake_library(void);
-void startup_wake_library(void)
-{
-}
+void startup_wake_library(void) {}
 
 __attribute__((naked)) void reset_handler(void)
 {
@@ -54,8 +52,15 @@ void fault_handler(void)
 
 /* The 16 of the core (ARMv7-M ARM, table B1-4); no peripheral interrupt is enabled yet. */
 __attribute__((section(".vectors"), used)) static const uintptr_t vectors[16] = {
-    (uintptr_t)stack_top,     (uintptr_t)reset_handler, (uintptr_t)fault_handler,
-    (uintptr_t)fault_handler, (uintptr_t)fault_handler, (uintptr_t)fault_handler,
-    (uintptr_t)fault_handler, [11] = (uintptr_t)fault_handler,
-    [12] = (uintptr_t)fault_handler, [14] = (uintptr_t)fault_handler, [15] = (uintptr_t)fault_handler,
+    (uintptr_t)stack_top,
+    (uintptr_t)reset_handler,
+    (uintptr_t)fault_handler,
+    (uintptr_t)fault_handler,
+    (uintptr_t)fault_handler,
+    (uintptr_t)fault_handler,
+    (uintptr_t)fault_handler,
+    [11] = (uintptr_t)fault_handler,
+    [12] = (uintptr_t)fault_handler,
+    [14] = (uintptr_t)fault_handler,
+    [15] = (uintptr_t)fault_handler,
 };
