@@ -1,4 +1,4 @@
-/* report.c - see report.h: fills the template's two markers, the chart library and the data. */
+/* report.c - see report.h: puts the data into the page of report_page/. */
 #include "report.h"
 
 #include <cjson/cJSON.h>
@@ -10,7 +10,10 @@
 #include "sim.h"
 #include "summary.h"
 
-extern const char report_template[], report_template_end[]; /* report_page.S */
+/* report_page/report_page.S */
+extern const char report_page_html[], report_page_html_end[];
+extern const char report_style_css[], report_style_css_end[];
+extern const char report_script_js[], report_script_js_end[];
 extern const char report_chart_js[], report_chart_js_end[];
 
 static const long FRAMES_MAX = 3000;
@@ -192,18 +195,34 @@ static void write_json(const char *json, FILE *file)
     }
 }
 
+/* The page with each of its @MARKERS@ replaced by what it names; any other '@' is the page's own. */
 static void write_page(const char *json, FILE *file)
 {
-    static const char CHART_JS[] = "@CHART_JS@", DATA[] = "@DATA@";
-    const char *chart_js = strstr(report_template, CHART_JS);
-    const char *data = strstr(report_template, DATA);
-    fwrite(report_template, 1, (size_t)(chart_js - report_template), file);
-    fwrite(report_chart_js, 1, (size_t)(report_chart_js_end - report_chart_js), file);
-    chart_js += strlen(CHART_JS);
-    fwrite(chart_js, 1, (size_t)(data - chart_js), file);
-    write_json(json, file);
-    data += strlen(DATA);
-    fwrite(data, 1, (size_t)(report_template_end - data), file);
+    const struct {
+        const char *marker, *begin, *end;
+    } parts[] = {
+        {"@STYLE@", report_style_css, report_style_css_end},
+        {"@SCRIPT@", report_script_js, report_script_js_end},
+        {"@CHART_JS@", report_chart_js, report_chart_js_end},
+        {"@DATA@", NULL, NULL},
+    };
+    const char *c = report_page_html;
+    while (c < report_page_html_end) {
+        size_t i = 0;
+        while (i < 4 && strncmp(c, parts[i].marker, strlen(parts[i].marker)) != 0) {
+            i++;
+        }
+        if (i == 4) {
+            putc(*c++, file);
+            continue;
+        }
+        if (parts[i].begin == NULL) {
+            write_json(json, file);
+        } else {
+            fwrite(parts[i].begin, 1, (size_t)(parts[i].end - parts[i].begin), file);
+        }
+        c += strlen(parts[i].marker);
+    }
 }
 
 int report_write(const replay *r, const char *preset, const char *path)

@@ -4,7 +4,7 @@
 
 #include "replay.h"
 
-/* The page's layout and the JSON it reads are described at the top of report.html. preset may be
+/* The page's layout and the JSON it reads are described at the top of report_page/page.html. preset may be
  * NULL. Returns SIM_OK, or an exit code after complaining. */
 int report_write(const replay *r, const char *preset, const char *path);
 

@@ -15,7 +15,7 @@ SKIPPED_TIERS=()
 read -r DISTRIBUTION CODENAME < <(. /etc/os-release && echo "$ID ${VERSION_CODENAME:-}") || true
 
 say() { printf '%s: %s\n' "${0##*/}" "$*" >&2; }
-last_error() { grep '^E:' "$LOG" | tail -n 1; }
+first_error() { grep -m 1 '^E:' "$LOG" || true; }
 
 # group|package|shows that it is there where dpkg does not know of it|what for
 # A `*` is the version that the distribution has chosen for clang.
@@ -25,9 +25,9 @@ demo|build-essential|command -v g++|compiles the host programs
 demo|cmake|command -v cmake|configures the build
 demo|ninja-build|command -v ninja|runs the build
 demo|pkg-config|command -v pkg-config|finds the libraries
+demo|libpopt-dev|pkg-config popt|reads command lines
 demo|libinih-dev|pkg-config inih|reads settings files
 demo|libcjson-dev|pkg-config libcjson|reads and writes JSON
-demo|libpopt-dev|pkg-config popt|reads command lines
 demo|libjs-chart.js|test -e /usr/share/javascript/chart.js|draws the charts of reports
 host|python3|command -v python3|runs the test oracles
 host|python3-numpy|python3 -c 'import numpy'|runs the test oracles
@@ -73,7 +73,7 @@ system_apt() {
     ((EUID == 0)) || as_root=(sudo)
     for ((tries = 0; tries < 60; tries++)); do
         "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get -qq -y \
-            -o DPkg::Lock::Timeout=300 "$@" </dev/null &>"$LOG" && return
+            -o DPkg::Lock::Timeout=300 "$@" </dev/null &>"$LOG" 9>&- && return
         grep -q 'Could not get lock' "$LOG" || return 1
         sleep 5
     done
@@ -87,13 +87,14 @@ install_missing() {
         packages+=("$package")
         say "installing $package ($why)"
     done
-    system_apt update || say "apt-get update failed, going on: $(last_error)"
+    system_apt update || say "apt-get update failed, going on: $(first_error)"
     clang=$(apt-cache depends clang 2>/dev/null | sed -n 's/.*Depends: clang-\([0-9]*\)$/\1/p')
     packages=("${packages[@]//\*/$clang}")
     system_apt install --no-install-recommends "${packages[@]}" && return
-    for package in "${packages[@]}"; do # what cannot be had must not keep the others out
-        system_apt install --no-install-recommends "$package" ||
-            say "could not install $package: $(last_error)"
+    say "that failed: $(first_error)"
+    grep -qE 'Unable to locate|no installation candidate' "$LOG" || return 0
+    for package in "${packages[@]}"; do # one that is not to be had must not keep the others out
+        system_apt install --no-install-recommends "$package" || say "could not: $(first_error)"
     done
 }
 
@@ -124,6 +125,7 @@ Dir::Etc::SourceList "$OWN_APT/sources.list";
 Dir::Etc::SourceParts "/dev/null";
 Acquire::Languages "none";
 APT::Sandbox::User "root";
+APT::Update::Error-Mode "any";
 Debug::NoLocking "true";
 #clear APT::Update::Post-Invoke;
 #clear APT::Update::Post-Invoke-Success;
@@ -140,14 +142,21 @@ use_unity() {
     return 1
 }
 
+# Only unpacked: installed, the package (of a mock generator) would bring a whole Ruby along.
+unpack_unity() {
+    if [[ $(LC_ALL=C apt-cache policy cmock 2>/dev/null) == *"Candidate: "[0-9]* ]]; then
+        mkdir -p "$OWN_APT" && (cd "$OWN_APT" && apt-get -qq download cmock &>"$LOG")
+    else
+        own_apt_init trixie && (cd "$OWN_APT" && own_apt download cmock)
+    fi && dpkg -x "$OWN_APT"/cmock_*.deb "$TOOLS_DIR/unity"
+}
+
 find_unity() {
     [[ -z ${UNITY_DIR:-} || -f $UNITY_DIR/src/unity.c ]] || say "no src/unity.c in UNITY_DIR=$UNITY_DIR"
     use_unity && return
-    if [[ $DISTRIBUTION == debian ]]; then
+    if command -v apt-get >/dev/null; then
         say "downloading Unity (runs the unit tests) into build/tools/unity"
-        # Only unpacked: as a package it would bring a whole Ruby along.
-        { own_apt_init trixie && (cd "$OWN_APT" && own_apt download cmock) &&
-            dpkg -x "$OWN_APT"/cmock_*.deb "$TOOLS_DIR/unity"; } || say "that failed: $(last_error)"
+        unpack_unity || say "that failed: $(first_error)"
         rm -rf "$OWN_APT"
     fi
     use_unity || say "no package has Unity (runs the unit tests): CMake will download it"
@@ -194,15 +203,17 @@ use_qemu() {
 
 find_qemu() {
     local candidate suite=$CODENAME
+    [[ -z ${QEMU_SYSTEM_ARM:-} ]] || qemu_serves "$QEMU_SYSTEM_ARM" ||
+        say "QEMU_SYSTEM_ARM=$QEMU_SYSTEM_ARM is not a QEMU >= 8.2 that has the board"
     use_qemu && return
     candidate=$(LC_ALL=C apt-cache policy qemu-system-arm 2>/dev/null | sed -n 's/ *Candidate: //p')
     dpkg --compare-versions "${candidate:-0}" ge 1:8.2 2>/dev/null || suite=$CODENAME-backports
     if [[ $suite == "$CODENAME" ]] && can_install; then
         say "installing qemu-system-arm (runs the tests of the firmware)"
-        system_apt install --no-install-recommends qemu-system-arm || say "that failed: $(last_error)"
+        system_apt install --no-install-recommends qemu-system-arm || say "that failed: $(first_error)"
     elif [[ $DISTRIBUTION == debian ]]; then
         say "downloading QEMU of $suite (runs the tests of the firmware) into build/tools/qemu"
-        unpack_qemu "$suite" || say "that failed: $(last_error)"
+        unpack_qemu "$suite" || say "that failed: $(first_error)"
         rm -rf "$OWN_APT"
     fi
     use_qemu || SKIPPED_TIERS+=("tests on the emulated board: no QEMU >= 8.2")
@@ -211,6 +222,8 @@ find_qemu() {
 setup() { # "REQUIRED GROUP..." "OPTIONAL GROUP..."
     local required=$1 optional=${2:-} row group package why fatal=()
     mkdir -p "$TOOLS_DIR"
+    exec 9>"$TOOLS_DIR/lock" # another terminal may be at it
+    ! command -v flock >/dev/null || flock 9
     # shellcheck disable=SC2086  # the groups are words
     find_missing $required $optional
     if ((${#MISSING[@]})) && can_install; then
@@ -230,4 +243,5 @@ setup() { # "REQUIRED GROUP..." "OPTIONAL GROUP..."
     fi
     [[ " $required " != *" host "* ]] || find_unity
     [[ " $optional " != *" target "* ]] || find_qemu
+    exec 9>&-
 }
