@@ -1,26 +1,23 @@
 /* startup.c - from reset to main on a Cortex-M4F (ARMv7-M ARM, B1.5.5 reset, B1.4.7 CPACR). */
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 extern uint32_t data_start[], data_end[], data_image[], bss_start[], bss_end[], stack_top[];
 
 int main(int argc, char **argv);
-void _exit(int status);
 void reset_handler(void);
 void fault_handler(void);
 
-/* What a host gives the program as arguments; tests that take some replace it. */
-__attribute__((weak)) int startup_arguments(char ***argv);
-int startup_arguments(char ***argv)
+/* The program's arguments, and whatever must wake before main: weak, so that a program which runs on an
+ * emulator and has a host to talk to brings its own. */
+int startup_arguments(char ***argv);
+__attribute__((weak)) int startup_arguments(char ***argv)
 {
-    static char *none[] = {(char *)"", (char *)0};
+    static char *none[] = {NULL};
     *argv = none;
-    return 1;
+    return 0;
 }
-
-/* Before main, with memory ready: where a C library needs waking. */
-__attribute__((weak)) void startup_wake_library(void);
-void startup_wake_library(void) {}
 
 __attribute__((naked)) void reset_handler(void)
 {
@@ -39,28 +36,27 @@ static void start(void)
 {
     memcpy(data_start, data_image, (size_t)((char *)data_end - (char *)data_start));
     memset(bss_start, 0, (size_t)((char *)bss_end - (char *)bss_start));
-    startup_wake_library();
     char **argv;
     const int argc = startup_arguments(&argv);
-    _exit(main(argc, argv));
+    exit(main(argc, argv));
 }
 
 void fault_handler(void)
 {
-    _exit(70); /* EX_SOFTWARE: ends an emulated test instead of hanging it */
+    _Exit(70); /* EX_SOFTWARE: ends an emulated program instead of hanging it */
 }
 
 /* The 16 of the core (ARMv7-M ARM, table B1-4); no peripheral interrupt is enabled yet. */
 __attribute__((section(".vectors"), used)) static const uintptr_t vectors[16] = {
-    (uintptr_t)stack_top,
-    (uintptr_t)reset_handler,
-    (uintptr_t)fault_handler,
-    (uintptr_t)fault_handler,
-    (uintptr_t)fault_handler,
-    (uintptr_t)fault_handler,
-    (uintptr_t)fault_handler,
-    [11] = (uintptr_t)fault_handler,
-    [12] = (uintptr_t)fault_handler,
-    [14] = (uintptr_t)fault_handler,
-    [15] = (uintptr_t)fault_handler,
+    (uintptr_t)stack_top,            /*  0: main stack */
+    (uintptr_t)reset_handler,        /*  1 */
+    (uintptr_t)fault_handler,        /*  2: NMI */
+    (uintptr_t)fault_handler,        /*  3: hard fault */
+    (uintptr_t)fault_handler,        /*  4: memory */
+    (uintptr_t)fault_handler,        /*  5: bus */
+    (uintptr_t)fault_handler,        /*  6: usage */
+    [11] = (uintptr_t)fault_handler, /* SVCall */
+    [12] = (uintptr_t)fault_handler, /* debug monitor */
+    [14] = (uintptr_t)fault_handler, /* PendSV */
+    [15] = (uintptr_t)fault_handler, /* SysTick */
 };
