@@ -2,6 +2,7 @@
 #include "penta.h"
 
 #include <float.h>
+#include <stdbool.h>
 
 int penta_factor(penta *factor, int rows_n, const float *diagonal, const float *off1,
                  const float *off2)
@@ -26,42 +27,72 @@ int penta_factor(penta *factor, int rows_n, const float *diagonal, const float *
         pivot_2 = pivot_1;
         pivot_1 = pivot;
     }
+    factor->row[rows_n] = factor->row[rows_n + 1] = (penta_row){0.0f, 0.0f, 0.0f};
     return 0;
 }
 
-/* One body for both widths: `width` is a constant where this is inlined, so the inner loops vanish. */
+/* One row of the forward pass. `older` is y of the row before last, `newer` of the last; this row's
+ * overwrites the older, so that the caller passes the two crosswise from row to row and nothing is
+ * moved about. Coefficients are read before b is written: the compiler cannot know they are apart. */
+static inline __attribute__((always_inline)) void forward_row(const penta_row *row, float *b,
+                                                              float *older, const float *newer,
+                                                              int width)
+{
+    const float below1 = row[0].below1, below2 = row[0].below2;
+    for (int r = 0; r < width; r++) {
+        older[r] = (b[r] - below2 * older[r]) - below1 * newer[r];
+    }
+    for (int r = 0; r < width; r++) {
+        b[r] = older[r];
+    }
+}
+
+/* The same for the backward pass, with the rows below. */
+static inline __attribute__((always_inline)) void backward_row(const penta_row *row, float *b,
+                                                               float *older, const float *newer,
+                                                               int width)
+{
+    const float above1 = row[1].below1, above2 = row[2].below2;
+    const float inverse_pivot = row[0].inverse_pivot;
+    for (int r = 0; r < width; r++) {
+        older[r] = (b[r] * inverse_pivot - above2 * older[r]) - above1 * newer[r];
+    }
+    for (int r = 0; r < width; r++) {
+        b[r] = older[r];
+    }
+}
+
+/* One body for both widths: `width` is a constant where this is inlined, so its loops vanish. */
 static inline __attribute__((always_inline)) void solve(const penta *factor, float *b, int width)
 {
+    const int rows_n = factor->rows_n;
+    const bool odd = (rows_n & 1) != 0;
     const penta_row *row = factor->row;
-    const int last = factor->rows_n - 1;
-    float near[3] = {0.0f, 0.0f, 0.0f}; /* the row just done */
-    float far[3] = {0.0f, 0.0f, 0.0f};  /* the one before it */
+    float one[3] = {0.0f, 0.0f, 0.0f}, other[3] = {0.0f, 0.0f, 0.0f};
 
-    for (int i = 0; i <= last; i++, b += width) {
-        for (int r = 0; r < width; r++) {
-            const float y = (b[r] - row[i].below2 * far[r]) - row[i].below1 * near[r];
-            far[r] = near[r];
-            near[r] = y;
-            b[r] = y;
-        }
+    for (int pairs = rows_n / 2; pairs > 0; pairs--) {
+        forward_row(row, b, one, other, width);
+        forward_row(row + 1, b + width, other, one, width);
+        row += 2;
+        b += 2 * width;
+    }
+    if (odd) {
+        forward_row(row, b, one, other, width);
+        row++;
+        b += width;
     }
 
-    float above1 = 0.0f, above2 = 0.0f; /* L[i+1][i], L[i+2][i] */
-    float above2_next = 0.0f;           /* L[i+1][i-1], met one row later */
     for (int r = 0; r < width; r++) {
-        near[r] = far[r] = 0.0f;
+        one[r] = other[r] = 0.0f;
     }
-    for (int i = last; i >= 0; i--) {
-        b -= width;
-        for (int r = 0; r < width; r++) {
-            const float x = (b[r] * row[i].inverse_pivot - above2 * far[r]) - above1 * near[r];
-            far[r] = near[r];
-            near[r] = x;
-            b[r] = x;
-        }
-        above1 = row[i].below1;
-        above2 = above2_next;
-        above2_next = row[i].below2;
+    for (int pairs = rows_n / 2; pairs > 0; pairs--) {
+        row -= 2;
+        b -= 2 * width;
+        backward_row(row + 1, b + width, one, other, width);
+        backward_row(row, b, other, one, width);
+    }
+    if (odd) {
+        backward_row(row - 1, b - width, one, other, width);
     }
 }
 

@@ -24,7 +24,7 @@ typedef struct {
 
 typedef struct {
     int rows_n;
-    penta_row row[ROD_MAX_LINKS];
+    penta_row row[ROD_MAX_LINKS + 2]; /* two rows of zeros end the matrix */
 } penta;
 
 /* The matrix: diagonal[i] = A[i][i], off1[i] = A[i][i-1], off2[i] = A[i][i-2]; off1[0], off2[0] and
