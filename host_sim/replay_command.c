@@ -8,6 +8,7 @@
 #include "options.h"
 #include "output.h"
 #include "params_text.h"
+#include "picture.h"
 #include "replay.h"
 #include "replay_files.h"
 #include "report.h"
@@ -27,6 +28,7 @@ enum {
     OPTION_ANGLES,
     OPTION_NODES,
     OPTION_REPORT,
+    OPTION_PICTURE,
     OPTION_CAPSULE,
     OPTION_EXPECT_HASH
 };
@@ -44,7 +46,7 @@ typedef struct {
     params_text params;
     track_options track;
     double rate_hz;
-    char *angles_path, *nodes_path, *report_path, *capsule_path;
+    char *angles_path, *nodes_path, *report_path, *picture_path, *capsule_path;
     bool expect;
     uint64_t expected_hash;
 } choices;
@@ -118,6 +120,8 @@ static int take_option(choices *c, int option, const char *text)
         return take_path(&c->nodes_path, text);
     case OPTION_REPORT:
         return take_path(&c->report_path, text);
+    case OPTION_PICTURE:
+        return take_path(&c->picture_path, text);
     case OPTION_CAPSULE:
         return take_path(&c->capsule_path, text);
     default:
@@ -178,6 +182,9 @@ static int write_files(const choices *c, const replay *r)
     }
     if (result == SIM_OK && c->capsule_path != NULL) {
         result = replay_write_capsule(r, c->capsule_path);
+    }
+    if (result == SIM_OK && c->picture_path != NULL) {
+        result = picture_write(r, c->picture_path);
     }
     if (result == SIM_OK && c->report_path != NULL) {
         const char *preset = c->params.preset != NULL ? c->params.preset->name : NULL;
@@ -244,6 +251,8 @@ int sim_replay_command(int argc, const char **argv)
          "write node positions: t,x0,y0,z0,x1,... s, m", "OUT.csv"},
         {"report", 0, POPT_ARG_STRING, NULL, OPTION_REPORT,
          "write one HTML page with plots and a 3-D view", "OUT.html"},
+        {"picture", 0, POPT_ARG_STRING, NULL, OPTION_PICTURE, "write a small moving picture",
+         "OUT.svg"},
         {"capsule", 0, POPT_ARG_STRING, NULL, OPTION_CAPSULE,
          "write parameters and the float32 pose of every tick", "OUT"},
         {"expect-hash", 'e', POPT_ARG_STRING, NULL, OPTION_EXPECT_HASH,
@@ -263,6 +272,7 @@ int sim_replay_command(int argc, const char **argv)
     free(c.angles_path);
     free(c.nodes_path);
     free(c.report_path);
+    free(c.picture_path);
     free(c.capsule_path);
     poptFreeContext(context);
     return result;

@@ -17,8 +17,10 @@ static capsule_header header;
 int main(int argc, char **argv)
 {
     FILE *file = argc == 2 ? fopen(argv[1], "rb") : NULL;
-    if (file == NULL || fread(&header, sizeof header, 1, file) != 1 || header.magic != CAPSULE_MAGIC) {
-        fprintf(stderr, "replay_capsule: needs one argument, a file of limber-sim replay --capsule\n");
+    if (file == NULL || fread(&header, sizeof header, 1, file) != 1 ||
+        header.magic != CAPSULE_MAGIC) {
+        fprintf(stderr,
+                "replay_capsule: needs one argument, a file of limber-sim replay --capsule\n");
         return 2;
     }
     if (rod_init(&subject, &header.params, NULL) != ROD_OK) {
@@ -34,7 +36,8 @@ int main(int argc, char **argv)
         }
         const rod_error error = rod_step(&subject, &tick.base);
         if (error != ROD_OK) {
-            fprintf(stderr, "replay_capsule: tick %" PRIu32 ": %s\n", done_n, rod_error_text(error));
+            fprintf(stderr, "replay_capsule: tick %" PRIu32 ": %s\n", done_n,
+                    rod_error_text(error));
             return 3;
         }
         hash = angle_hash_add(hash, &rod_angles(&subject)[0][0], 2 * header.params.links_n);

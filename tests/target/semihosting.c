@@ -25,7 +25,8 @@ int startup_arguments(char ***argv)
     __asm__ volatile("bkpt 0xAB" : "+r"(operation) : "r"(parameters) : "memory");
     int n = 0;
     if (operation == 0) {
-        for (char *word = strtok(line, " "); word != NULL && n < WORDS_MAX; word = strtok(NULL, " ")) {
+        for (char *word = strtok(line, " "); word != NULL && n < WORDS_MAX;
+             word = strtok(NULL, " ")) {
             words[n++] = word;
         }
     }
