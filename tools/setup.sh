@@ -34,6 +34,8 @@ host|python3-numpy|python3 -c 'import numpy'|runs the test oracles
 target|gcc-arm-none-eabi|command -v arm-none-eabi-gcc|compiles the firmware
 target|libnewlib-arm-none-eabi|arm-none-eabi-gcc --specs=nano.specs -E -xc /dev/null|C library of the firmware
 clang|clang|command -v clang|second compiler, fuzzing
+clang|lld|command -v wasm-ld|links WebAssembly
+clang|nodejs|command -v node|runs WebAssembly
 clang|libclang-rt-*-dev|clang -fsanitize=address -xc -o /dev/null - <<<'int main(void){return 0;}'|sanitizers of clang
 bench|liblapacke-dev|test -e /usr/include/lapacke.h|what the solver is measured against
 bench|libeigen3-dev|pkg-config eigen3|what the solver is measured against

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""The emulated board comes to the same bits as the simulator: replays with their exact float32 poses.
+"""Another machine comes to the same bits as the simulator: replays with their exact float32 poses.
+
+The machine is the emulated board (--qemu, --runner) or any command that takes a capsule (--command).
 
 Generated tracks always; the recorded ones where the checkout has them beside it (said aloud if not).
 """
 import argparse
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -32,17 +35,23 @@ def compare(choices, track, arguments, folder):
     capsule = pathlib.Path(folder) / "capsule"
     host = subprocess.run([choices.sim, "replay", str(track), *arguments, "--capsule", str(capsule)],
                           check=True, capture_output=True, text=True).stdout
-    board = emulator.run(choices.qemu, choices.runner, [str(capsule)])
-    same = hash_in(host) == hash_in(board)
-    print(f"{hash_in(host)} {hash_in(board)}  {track.name} {' '.join(arguments)}"
+    if choices.command:
+        other = subprocess.run([*shlex.split(choices.command), str(capsule)], check=True,
+                               capture_output=True, text=True).stdout
+    else:
+        other = emulator.run(choices.qemu, choices.runner, [str(capsule)])
+    same = hash_in(host) == hash_in(other)
+    print(f"{hash_in(host)} {hash_in(other)}  {track.name} {' '.join(arguments)}"
           f"{'' if same else '   <-- FAILED'}", flush=True)
     return same
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    for name in ("sim", "qemu", "runner", "shared-tracks"):
+    for name in ("sim", "shared-tracks"):
         parser.add_argument(f"--{name}", required=True)
+    for name in ("qemu", "runner", "command"):
+        parser.add_argument(f"--{name}")
     choices = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         tracks = pathlib.Path(folder) / "tracks"
