@@ -4,6 +4,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+const char *sim_program_name = "limber-sim";
+
 static void say(const char *format, va_list arguments)
 {
     char line[1024];
@@ -14,7 +16,7 @@ static void say(const char *format, va_list arguments)
             *c = '?';
         }
     }
-    fprintf(stderr, "limber-sim: %s\n", line);
+    fprintf(stderr, "%s: %s\n", sim_program_name, line);
 }
 
 int sim_complain(const char *format, ...)

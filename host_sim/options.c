@@ -10,9 +10,9 @@ int options_next(poptContext context, const char *command, const char *examples)
 {
     const int found = poptGetNextOpt(context);
     if (found < -1) {
-        (void)sim_complain("%s: %s: %s; try limber-sim %s --help", command,
+        (void)sim_complain("%s: %s: %s; try %s %s --help", command,
                            poptBadOption(context, POPT_BADOPTION_NOALIAS), poptStrerror(found),
-                           command);
+                           sim_program_name, command);
         return -1;
     }
     if (found == OPTION_HELP) {
@@ -26,7 +26,8 @@ const char *options_one_argument(poptContext context, const char *command, const
 {
     const char *first = poptGetArg(context);
     if (first == NULL) {
-        (void)sim_complain("%s: no %s given; try limber-sim %s --help", command, what, command);
+        (void)sim_complain("%s: no %s given; try %s %s --help", command, what, sim_program_name,
+                           command);
         return NULL;
     }
     const char *second = poptGetArg(context);

@@ -137,24 +137,48 @@ typedef struct {
     const char *path;
     FILE *file;
     long line;
+    bool in_value;  /* a key stands above in this section, so that a value can go on */
     bool continued; /* the line begins with a blank: inih takes it as more of the one before */
     int result;
 } ini_reading;
 
+/* Remarks may follow a value after a blank; inih's versions differ on them in lines that go on. */
+static void cut_remark(char *line)
+{
+    for (char *c = line; *c != '\0'; c++) {
+        if ((*c == ';' || *c == '#') && c > line && isspace((unsigned char)c[-1])) {
+            *c = '\0';
+            return;
+        }
+    }
+}
+
 static char *next_ini_line(char *buffer, int size, void *context)
 {
     ini_reading *reading = context;
-    if (reading->result != SIM_OK || fgets(buffer, size, reading->file) == NULL) {
+    int c = EOF, used = 0;
+    reading->line++;
+    while (reading->result == SIM_OK && (c = getc(reading->file)) != EOF && c != '\n') {
+        if (c < ' ' && !isspace(c)) {
+            reading->result = sim_complain("%s:%ld: not a text file", reading->path, reading->line);
+        } else if (used == size - 2) {
+            reading->result =
+                sim_complain("%s:%ld: longer than %d characters; go on with the list on an "
+                             "indented line",
+                             reading->path, reading->line, size - 2);
+        } else {
+            buffer[used++] = (char)c;
+        }
+    }
+    if (reading->result != SIM_OK || (c == EOF && used == 0)) {
+        reading->line--;
         return NULL;
     }
-    reading->line++;
-    reading->continued = isspace((unsigned char)*buffer);
-    if (strchr(buffer, '\n') == NULL && getc(reading->file) != EOF) {
-        reading->result =
-            sim_complain("%s:%ld: longer than %d characters; go on with the list on an "
-                         "indented line",
-                         reading->path, reading->line, size - 2);
-        return NULL;
+    buffer[used] = '\0';
+    cut_remark(buffer);
+    reading->continued = reading->in_value && isspace((unsigned char)*buffer);
+    if (!reading->continued && buffer[strspn(buffer, " \t")] == '[') {
+        reading->in_value = false;
     }
     return buffer;
 }
@@ -165,6 +189,7 @@ static int take_from_ini(void *context, const char *section, const char *name, c
     if (reading->result != SIM_OK) {
         return 0;
     }
+    reading->in_value = true;
     char origin[160];
     snprintf(origin, sizeof origin, "%.140s:%ld", reading->path, reading->line);
     reading->result =

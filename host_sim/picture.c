@@ -34,7 +34,7 @@ static long tick_of(const replay *r, long frame)
 
 static paper fit(const replay *r, long frames_n)
 {
-    double left = INFINITY, right = -INFINITY, bottom = INFINITY, top = -INFINITY;
+    double left = HUGE_VAL, right = -HUGE_VAL, bottom = HUGE_VAL, top = -HUGE_VAL;
     for (long frame = 0; frame < frames_n; frame++) {
         double nodes_m[ROD_MAX_LINKS + 1][3];
         replay_nodes(r, tick_of(r, frame), nodes_m);

@@ -11,7 +11,7 @@
 #include "angle_hash.h"
 #include "sim.h"
 
-static const double MOST_VALUES = 1e9; /* 4 GB of angles */
+static const double MOST_GB = 2.0; /* seven hours of four links at 1 kHz */
 
 static double now_us(void)
 {
@@ -110,37 +110,64 @@ static void sum_up_joints(replay *r)
     }
 }
 
-/* One Fourier coefficient of an angle over the run, from every step-th tick. */
-static void fourier(const replay *r, int column, double frequency_hz, long step, double out[2])
+/* Part of a run, as lags are found from it. */
+typedef struct {
+    long first, end, step; /* ticks; every step-th one is looked at */
+} stretch;
+
+/* The stretch of that many ticks in which joint 1 swings most. */
+static stretch liveliest(const replay *r, long length)
 {
-    const double turn = 2.0 * M_PI * frequency_hz * (double)step / r->rate_hz;
-    const double c = cos(turn), s = sin(turn);
+    double swing = 0.0, most = -1.0;
+    long best = 0;
+    for (long n = 0; n < r->ticks_n; n++) {
+        const float *in = replay_angles(r, n);
+        swing += (double)(in[0] * in[0] + in[1] * in[1]);
+        if (n >= length) {
+            const float *out = replay_angles(r, n - length);
+            swing -= (double)(out[0] * out[0] + out[1] * out[1]);
+        }
+        if (n + 1 >= length && swing > most) {
+            most = swing;
+            best = n + 1 - length;
+        }
+    }
+    return (stretch){best, best + length, (long)fmax(1.0, r->rate_hz / 50.0)};
+}
+
+/* One Fourier coefficient of an angle over a stretch. */
+static void fourier(const replay *r, const stretch *s, int column, double frequency_hz,
+                    double out[2])
+{
+    const double turn = 2.0 * M_PI * frequency_hz * (double)s->step / r->rate_hz;
+    const double cosine = cos(turn), sine = sin(turn);
     double x = 1.0, y = 0.0;
     out[0] = out[1] = 0.0;
-    for (long n = 0; n < r->ticks_n; n += step) {
+    for (long n = s->first; n < s->end; n += s->step) {
         const double angle = (double)replay_angles(r, n)[column];
         out[0] += angle * x;
         out[1] -= angle * y;
-        const double turned = x * c - y * s;
-        y = x * s + y * c;
+        const double turned = x * cosine - y * sine;
+        y = x * sine + y * cosine;
         x = turned;
     }
 }
 
 /* Phase lags as the paper's figures show them: at the frequency at which joint 1 swings most, up to
- * 10 Hz, theta and phi together. */
+ * 10 Hz, theta and phi together. Of a long run the liveliest 200 s. */
 static void find_lags(replay *r)
 {
-    const double duration_s = (double)r->ticks_n / r->rate_hz;
-    const long step = (long)fmax(1.0, r->rate_hz / 50.0);
+    const long length = (long)fmin((double)r->ticks_n, 200.0 * r->rate_hz);
+    const stretch s = liveliest(r, length);
+    const double duration_s = (double)length / r->rate_hz;
     const double top_hz = fmin(10.0, 0.4 * r->rate_hz);
-    const int bins_n = (int)fmin(2000.0, top_hz * duration_s);
+    const int bins_n = (int)(top_hz * duration_s);
     double strongest = 0.0;
     for (int k = 1; k <= bins_n; k++) {
         double power = 0.0;
         for (int axis = 0; axis < 2; axis++) {
             double f[2];
-            fourier(r, axis, k / duration_s, step, f);
+            fourier(r, &s, axis, k / duration_s, f);
             power += f[0] * f[0] + f[1] * f[1];
         }
         if (power > strongest) {
@@ -148,7 +175,7 @@ static void find_lags(replay *r)
             r->lag_frequency_hz = k / duration_s;
         }
     }
-    const double samples_n = (double)(r->ticks_n / step);
+    const double samples_n = (double)(length / s.step);
     if (sqrt(strongest) < 1e-6 * samples_n) { /* under 2 microradians: joint 1 does not swing */
         r->lag_frequency_hz = 0.0;
         return;
@@ -157,8 +184,8 @@ static void find_lags(replay *r)
         double real = 0.0, imaginary = 0.0;
         for (int axis = 0; axis < 2; axis++) {
             double first[2], own[2];
-            fourier(r, axis, r->lag_frequency_hz, step, first);
-            fourier(r, 2 * joint + axis, r->lag_frequency_hz, step, own);
+            fourier(r, &s, axis, r->lag_frequency_hz, first);
+            fourier(r, &s, 2 * joint + axis, r->lag_frequency_hz, own);
             real += first[0] * own[0] + first[1] * own[1];
             imaginary += first[1] * own[0] - first[0] * own[1];
         }
@@ -175,11 +202,13 @@ int replay_run(const track *source, const rod_params *params, double rate_hz, re
     *out = (replay){.source = source, .params = *params, .rate_hz = rate_hz};
     const double ticks = track_ticks_count(source, rate_hz);
     const double values = ticks * 2.0 * params->links_n;
-    if (!(values <= MOST_VALUES)) {
-        return sim_complain(
-            "%s: %.0f s at %g Hz make %.3g ticks of %d joints, too many to keep (at most "
-            "%.0e angles); lower --rate or cut the track",
-            source->path, track_duration_s(source), rate_hz, ticks, params->links_n, MOST_VALUES);
+    const double gb =
+        1e-9 * (ticks * (double)(sizeof *out->ticks + sizeof(float)) + values * sizeof(float));
+    if (!(gb <= MOST_GB)) {
+        return sim_complain("%s: %.0f s at %g Hz make %.3g ticks of %d joints, too many to keep "
+                            "(%.3g GB, at most %g); lower --rate or cut the track",
+                            source->path, track_duration_s(source), rate_hz, ticks, params->links_n,
+                            gb, MOST_GB);
     }
     out->ticks_n = (long)ticks;
     out->ticks = malloc((size_t)out->ticks_n * sizeof *out->ticks);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body_log.h"
 #include "options.h"
 #include "output.h"
 #include "params_text.h"
@@ -30,6 +31,7 @@ enum {
     OPTION_REPORT,
     OPTION_PICTURE,
     OPTION_CAPSULE,
+    OPTION_PER_TICK,
     OPTION_EXPECT_HASH
 };
 
@@ -46,7 +48,7 @@ typedef struct {
     params_text params;
     track_options track;
     double rate_hz;
-    char *angles_path, *nodes_path, *report_path, *picture_path, *capsule_path;
+    char *angles_path, *nodes_path, *report_path, *picture_path, *capsule_path, *per_tick_path;
     bool expect;
     uint64_t expected_hash;
 } choices;
@@ -124,6 +126,8 @@ static int take_option(choices *c, int option, const char *text)
         return take_path(&c->picture_path, text);
     case OPTION_CAPSULE:
         return take_path(&c->capsule_path, text);
+    case OPTION_PER_TICK:
+        return take_path(&c->per_tick_path, text);
     default:
         return take_hash(c, text);
     }
@@ -193,6 +197,23 @@ static int write_files(const choices *c, const replay *r)
     return result;
 }
 
+static int hold_to_hash(const choices *c, uint64_t hash)
+{
+    if (!c->expect || hash == c->expected_hash) {
+        return SIM_OK;
+    }
+    fprintf(stderr, "limber-sim: the hash differs: %016" PRIx64 ", expected %016" PRIx64 "\n", hash,
+            c->expected_hash);
+    return SIM_HASH_DIFFERS;
+}
+
+static int replay_per_tick(const choices *c)
+{
+    uint64_t hash;
+    const int result = body_log_replay(c->per_tick_path, c->angles_path, &hash);
+    return result == SIM_OK ? hold_to_hash(c, hash) : result;
+}
+
 static int replay_track(const choices *c, const char *path)
 {
     rod_params params;
@@ -208,18 +229,13 @@ static int replay_track(const choices *c, const char *path)
     result = replay_run(&source, &params, c->rate_hz, &r);
     if (result == SIM_OK) {
         /* files before the summary: what is printed is only what all went well */
-        result = write_files(c, &r);
+        result = outputs_finish(write_files(c, &r));
         if (result == SIM_OK) {
             summary_print(&r, c->params.preset != NULL ? c->params.preset->name : NULL, stdout);
             if (c->report_path != NULL) {
                 printf("report     %s\n", c->report_path);
             }
-            if (c->expect && r.hash != c->expected_hash) {
-                fprintf(stderr,
-                        "limber-sim: the hash differs: %016" PRIx64 ", expected %016" PRIx64 "\n",
-                        r.hash, c->expected_hash);
-                result = SIM_HASH_DIFFERS;
-            }
+            result = hold_to_hash(c, r.hash);
         }
         replay_free(&r);
     }
@@ -255,6 +271,9 @@ int sim_replay_command(int argc, const char **argv)
          "OUT.svg"},
         {"capsule", 0, POPT_ARG_STRING, NULL, OPTION_CAPSULE,
          "write parameters and the float32 pose of every tick", "OUT"},
+        {"per-tick", 0, POPT_ARG_STRING, NULL, OPTION_PER_TICK,
+         "instead of a track: the log of limber-sim device, tick by tick, with its limits and blends",
+         "LOG"},
         {"expect-hash", 'e', POPT_ARG_STRING, NULL, OPTION_EXPECT_HASH,
          "exit 1 unless the angles have this hash", "HASH"},
         OPTIONS_END,
@@ -265,7 +284,9 @@ int sim_replay_command(int argc, const char **argv)
     poptSetOtherOptionHelp(context, "TRACK [OPTION...]");
     bool help;
     int result = take_options(context, &c, &help);
-    if (result == SIM_OK && !help) {
+    if (result == SIM_OK && !help && c.per_tick_path != NULL) {
+        result = replay_per_tick(&c);
+    } else if (result == SIM_OK && !help) {
         const char *path = options_one_argument(context, "replay", "track");
         result = path == NULL ? SIM_BAD_INPUT : replay_track(&c, path);
     }
@@ -274,6 +295,7 @@ int sim_replay_command(int argc, const char **argv)
     free(c.report_path);
     free(c.picture_path);
     free(c.capsule_path);
+    free(c.per_tick_path);
     poptFreeContext(context);
     return result;
 }

@@ -10,6 +10,7 @@ static const struct {
     const char *what;
 } COMMANDS[] = {
     {"replay", sim_replay_command, "bend a rod along a recorded track; summary, CSV, report, hash"},
+    {"device", sim_device_command, "be the board: a device on a PTY or TCP port, in real time"},
     {"params", sim_params_command, "print a complete, commented parameter file"},
     {"tracks", sim_tracks_command, "write the paper's five motions and damaged variants of them"},
 };
@@ -27,7 +28,7 @@ static void print_help(void)
            "Exit codes: 0 fine, 1 the hash differs, 2 bad input, 3 internal failure\n");
 }
 
-int main(int argc, char **argv)
+static int run(int argc, char **argv)
 {
     if (argc < 2) {
         return sim_complain("no command given; try limber-sim --help");
@@ -47,4 +48,13 @@ int main(int argc, char **argv)
         }
     }
     return sim_complain("unknown command '%s'; try limber-sim --help", argv[1]);
+}
+
+int main(int argc, char **argv)
+{
+    const int result = run(argc, argv);
+    if ((fflush(stdout) != 0 || ferror(stdout)) && result != SIM_INTERNAL) {
+        return sim_complain("the standard output cannot be written");
+    }
+    return result;
 }

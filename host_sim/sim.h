@@ -15,6 +15,9 @@ enum {
 
 #define SIM_VERSION "0.1.0"
 
+/* Who complains: "limber-sim"; the PC tool puts its own name here before anything else. */
+extern const char *sim_program_name;
+
 /* One line on stderr, "limber-sim: ...", and SIM_BAD_INPUT to return. Says where, why and what to do. */
 int sim_complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
@@ -25,5 +28,6 @@ int sim_give_up(const char *format, ...) __attribute__((format(printf, 1, 2)));
 int sim_replay_command(int argc, const char **argv);
 int sim_params_command(int argc, const char **argv);
 int sim_tracks_command(int argc, const char **argv);
+int sim_device_command(int argc, const char **argv);
 
 #endif

@@ -14,6 +14,11 @@ static __attribute__((format(printf, 3, 4))) void add_row(summary *s, const char
     snprintf(s->labels[s->rows_n], SUMMARY_TEXT_MAX, "%s", label);
     vsnprintf(s->values[s->rows_n], SUMMARY_TEXT_MAX, format, arguments);
     va_end(arguments);
+    for (char *c = s->values[s->rows_n]; *c != '\0'; c++) {
+        if ((unsigned char)*c < ' ' || *c == 127) {
+            *c = '?'; /* a track's name may hold anything; a row stays one line */
+        }
+    }
     s->rows_n++;
 }
 

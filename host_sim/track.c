@@ -9,6 +9,7 @@
 #include "track_reader.h"
 
 static const double LONGEST_GAP_S = 0.25;
+static const double TICK_SLACK = 1e-9; /* of a tick, for decimal times that are rounded in binary */
 
 static void convert(track_sample *s, const track_options *options)
 {
@@ -55,6 +56,16 @@ static bool normalise(double q[4], track_counts *counts)
     return true;
 }
 
+bool track_take_sample(track_sample *s, const track_options *options, track_counts *counts)
+{
+    if (!normalise(s->orientation, counts)) {
+        counts->zero_quaternions++;
+        return false;
+    }
+    convert(s, options);
+    return true;
+}
+
 static double distance_m(const track_sample *a, const track_sample *b)
 {
     return hypot(hypot(a->position_m[0] - b->position_m[0], a->position_m[1] - b->position_m[1]),
@@ -70,11 +81,9 @@ static void clean(track *t, const track_options *options)
     size_t kept = 0;
     counts->lines = (long)t->samples_n;
     for (size_t i = 0; i < t->samples_n; i++) {
-        if (!normalise(s[i].orientation, counts)) {
-            counts->zero_quaternions++;
+        if (!track_take_sample(&s[i], options, counts)) {
             continue;
         }
-        convert(&s[i], options);
         if (kept > 0 && !(s[i].t_s > s[kept - 1].t_s)) {
             counts->repeated_times++;
             kept--;
@@ -177,7 +186,7 @@ double track_duration_s(const track *t)
 
 double track_ticks_count(const track *source, double rate_hz)
 {
-    return floor(track_duration_s(source) * rate_hz + 1e-9) + 1.0;
+    return floor(track_duration_s(source) * rate_hz + TICK_SLACK) + 1.0;
 }
 
 track_ticks track_ticks_start(const track *source, double rate_hz)
@@ -217,7 +226,8 @@ bool track_ticks_next(track_ticks *ticks, track_tick *tick)
     const track_sample *s = t->samples;
     const double now_s = s[0].t_s + (double)ticks->next / ticks->rate_hz;
     tick->restart = ticks->next == 0;
-    while (ticks->near + 1 < t->samples_n && s[ticks->near + 1].t_s <= now_s) {
+    while (ticks->near + 1 < t->samples_n && (s[ticks->near + 1].t_s - s[0].t_s) * ticks->rate_hz <=
+                                                 (double)ticks->next + TICK_SLACK) {
         tick->restart |= s[ticks->near + 1].t_s - s[ticks->near].t_s > LONGEST_GAP_S;
         ticks->near++;
     }
@@ -227,6 +237,7 @@ bool track_ticks_next(track_ticks *ticks, track_tick *tick)
     const track_sample *b = last ? a : a + 1;
     const double span_s = b->t_s - a->t_s;
     const bool hold = last || span_s > LONGEST_GAP_S;
-    tick->base = blend(a, b, hold ? 0.0 : (now_s - a->t_s) / span_s, t->origin_m);
+    const double u = hold ? 0.0 : fmax(0.0, now_s - a->t_s) / span_s;
+    tick->base = blend(a, b, u, t->origin_m);
     return true;
 }

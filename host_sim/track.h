@@ -55,6 +55,10 @@ typedef struct {
 int track_read(const char *path, const track_options *options, track *out);
 void track_free(track *t);
 
+/* One sample as written to one as the rod takes it: unit length, metres, right-handed, z up. False, and
+ * counted, for the quaternion that is all zeros. track_read does it for a whole file. */
+bool track_take_sample(track_sample *s, const track_options *options, track_counts *counts);
+
 /* Duration from first to last sample. */
 double track_duration_s(const track *t);
 

@@ -12,7 +12,7 @@
 
 #include "sim.h"
 
-enum { VALUES_N = 8, COLUMNS_MAX = 64 };
+enum { VALUES_N = 8, COLUMNS_MAX = 64, LINE_MAX_BYTES = 4096 };
 enum { T, X, Y, Z, QX, QY, QZ, QW };
 
 static const char *const TUM_NAMES[VALUES_N] = {"timestamp", "tx", "ty", "tz",
@@ -39,6 +39,8 @@ typedef struct {
     int columns_n;
     int column[VALUES_N]; /* where each value stands */
     int64_t first_ns;
+    long hidden_line; /* where a comment was that may be EuRoC's header; 0: nowhere */
+    char hidden_header[LINE_MAX_BYTES];
     track_sample *samples;
     size_t samples_n, room_n;
 } reader;
@@ -111,6 +113,7 @@ static int value_named(const char *name)
 static int read_header(reader *r, char *line)
 {
     char *fields[COLUMNS_MAX];
+    bool is_euroc = false, in_seconds = false;
     r->comma_separated = true;
     r->columns_n = split(line, true, fields);
     if (r->columns_n < 0) {
@@ -129,9 +132,10 @@ static int read_header(reader *r, char *line)
             return sim_complain("%s:%ld: two columns for %s", r->path, r->line, TUM_NAMES[value]);
         }
         r->column[value] = i;
-        const bool is_ns = strcasecmp(unit, "ns") == 0 || strstr(fields[i], "_ns") != NULL;
+        const bool is_ns = strcasecmp(unit, "ns") == 0 || strcasestr(fields[i], "_ns") != NULL;
         if (value == T) {
             r->nanoseconds = is_ns;
+            in_seconds = strcmp(unit, "s") == 0;
         }
         const bool unit_known = *unit == '\0' ||
                                 (value == T && (is_ns || strcmp(unit, "s") == 0)) ||
@@ -142,11 +146,10 @@ static int read_header(reader *r, char *line)
                 "(take the unit away and give --scale)",
                 r->path, r->line, fields[i], unit);
         }
-        /* EuRoC's first headers give the time no unit: it is nanoseconds in all of them */
-        if (value == X && strcasecmp(fields[i], "p_rs_r_x") == 0) {
-            r->nanoseconds = true;
-        }
+        is_euroc = is_euroc || strcasecmp(fields[i], "p_rs_r_x") == 0;
     }
+    /* EuRoC's first headers give the time no unit: it is nanoseconds in all of them */
+    r->nanoseconds = r->nanoseconds || (is_euroc && !in_seconds);
     for (int value = 0; value < VALUES_N; value++) {
         if (r->column[value] < 0) {
             return sim_complain("%s:%ld: the header has no column for %s", r->path, r->line,
@@ -184,7 +187,7 @@ static int read_nanoseconds(reader *r, const char *text, double *t_s)
     if (r->samples_n == 0) {
         r->first_ns = ns;
     }
-    *t_s = (double)(ns - r->first_ns) * 1e-9;
+    *t_s = (double)(ns - r->first_ns) / 1e9;
     return SIM_OK;
 }
 
@@ -241,45 +244,56 @@ static int commas_in(const char *line)
     return n;
 }
 
-/* The first line that is neither blank nor a comment decides: a CSV header has commas and begins with
- * a name. EuRoC hides its header behind a '#', which then must name at least all of the columns. */
+/* A CSV header begins with a name and has commas. */
 static bool is_header(const char *line)
 {
-    const char *first = line + strspn(line, "# \t");
-    const bool hidden = *line == '#';
-    return isalpha((unsigned char)*first) && strncasecmp(first, "nan", 3) != 0 &&
-           strncasecmp(first, "inf", 3) != 0 && commas_in(line) >= (hidden ? VALUES_N - 1 : 1);
+    return isalpha((unsigned char)*line) && strncasecmp(line, "nan", 3) != 0 &&
+           strncasecmp(line, "inf", 3) != 0 && strchr(line, ',') != NULL;
+}
+
+/* The first line that is neither blank nor a comment decides what the file is. */
+static int start(reader *r, char *line)
+{
+    r->started = true;
+    if (is_header(line)) {
+        return read_header(r, line);
+    }
+    if (strchr(line, ',') == NULL) {
+        r->columns_n = VALUES_N;
+        for (int value = 0; value < VALUES_N; value++) {
+            r->column[value] = value;
+        }
+        return read_sample(r, line);
+    }
+    if (r->hidden_line == 0) {
+        return sim_complain("%s:%ld: comma-separated, but no header line names the columns "
+                            "(timestamp,tx,ty,tz,qx,qy,qz,qw)",
+                            r->path, r->line);
+    }
+    const long line_number = r->line;
+    r->line = r->hidden_line;
+    const int result = read_header(r, r->hidden_header);
+    r->line = line_number;
+    return result == SIM_OK ? read_sample(r, line) : result;
 }
 
 static int read_line(reader *r, char *line)
 {
     line = trim(line);
+    if (*line == '#') {
+        /* EuRoC hides its header behind a '#', other files write prose there: what follows tells */
+        if (!r->started && commas_in(line) >= VALUES_N - 1) {
+            strcpy(r->hidden_header, line + strspn(line, "# \t"));
+            r->hidden_line = r->line;
+        }
+        return SIM_OK;
+    }
     if (*line == '\0') {
         return SIM_OK;
     }
-    if (!r->started && is_header(line)) {
-        r->started = true;
-        return read_header(r, line + strspn(line, "# \t"));
-    }
-    if (*line == '#') {
-        return SIM_OK;
-    }
-    if (!r->started) {
-        if (strchr(line, ',') != NULL) {
-            return sim_complain("%s:%ld: comma-separated, but no header line names the columns "
-                                "(timestamp,tx,ty,tz,qx,qy,qz,qw)",
-                                r->path, r->line);
-        }
-        r->started = true;
-        r->columns_n = VALUES_N;
-        for (int value = 0; value < VALUES_N; value++) {
-            r->column[value] = value;
-        }
-    }
-    return read_sample(r, line);
+    return r->started ? read_sample(r, line) : start(r, line);
 }
 
-enum { LINE_MAX_BYTES = 4096 };
 typedef enum { LINE_READ, LINE_NOT_TEXT, LINE_TOO_LONG, LINE_END } line_kind;
 
 /* One line without its end. A track is text: anything else is refused before its bytes are taken for

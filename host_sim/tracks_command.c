@@ -88,24 +88,26 @@ static int write_tracks(const char *folder)
     if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
         return sim_complain("%s: %s", folder, strerror(errno));
     }
-    for (int i = 0; i < TRACKS_N; i++) {
+    int result = SIM_OK;
+    for (int i = 0; i < TRACKS_N && result == SIM_OK; i++) {
         char path[4096];
         if (snprintf(path, sizeof path, "%s/%s", folder, TRACKS[i].file) >= (int)sizeof path) {
-            return sim_complain("%.60s...: the path is too long", folder);
+            result = sim_complain("%.60s...: the path is too long", folder);
+            break;
         }
-        const motion *m = &motions[TRACKS[i].motion];
         output out;
-        int result = output_open(&out, path);
+        result = output_open(&out, path);
         if (result == SIM_OK) {
-            write_track(out.file, m, TRACKS[i].damage, TRACKS[i].what);
+            write_track(out.file, &motions[TRACKS[i].motion], TRACKS[i].damage, TRACKS[i].what);
             result = output_close(&out, true);
         }
-        if (result != SIM_OK) {
-            return result;
-        }
-        printf("%-28s %s\n", TRACKS[i].file, TRACKS[i].what == NULL ? m->what : TRACKS[i].what);
     }
-    return SIM_OK;
+    result = outputs_finish(result);
+    for (int i = 0; i < TRACKS_N && result == SIM_OK; i++) {
+        const char *what = TRACKS[i].what == NULL ? motions[TRACKS[i].motion].what : TRACKS[i].what;
+        printf("%-28s %s\n", TRACKS[i].file, what);
+    }
+    return result;
 }
 
 static const char EXAMPLES[] = "  limber-sim tracks build/tracks\n"

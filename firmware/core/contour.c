@@ -4,21 +4,53 @@
 #include <float.h>
 #include <stddef.h>
 
+/* M's bands. K's are those of D1' beta D1 + D2' eta D2 + diag k, D1 and D2 the first and second
+ * difference. The midpoint scheme averages K over three time levels, so a quarter of it is implicit; the
+ * paper's takes the internal energy wholly implicit, spring and damper explicit (Eq. 5). */
+static int factor_system(const rod_params *params, penta *system)
+{
+    float diagonal[ROD_MAX_LINKS], off1[ROD_MAX_LINKS], off2[ROD_MAX_LINKS];
+    const int n = params->links_n;
+    const bool paper = params->scheme == ROD_SCHEME_PAPER;
+    const float half_dt = 0.5f * params->tick_s;
+    const float share = (paper ? 1.0f : 0.25f) * (params->tick_s * params->tick_s);
+    const float *beta = params->coupling, *eta = params->smoothing;
+    for (int i = 0; i < n; i++) {
+        /* the second difference at i reaches from i - 1 to i + 1: none at the last joint */
+        const float eta_before = i >= 1 ? eta[i - 1] : 0.0f;
+        const float eta_here = i + 1 < n ? eta[i] : 0.0f;
+        const float eta_after = i + 2 < n ? eta[i + 1] : 0.0f;
+        const float beta_after = i + 1 < n ? beta[i + 1] : 0.0f;
+        const float spring = paper ? 0.0f : params->spring[i];
+        const float rate = params->drag[i] + (paper ? 0.0f : params->damper[i]);
+        diagonal[i] = params->inertia[i] + half_dt * rate +
+                      share * (spring + beta[i] + beta_after + eta_before + 4.0f * eta_here +
+                               eta_after);
+        off1[i] = -share * (beta[i] + 2.0f * eta_here + 2.0f * eta_before);
+        off2[i] = share * eta_before;
+    }
+    return penta_factor(system, n, diagonal, off1, off2);
+}
+
 rod_error contour_prepare(contour *model, const rod_params *params, int *row_n)
 {
+    penta system;
+    *row_n = factor_system(params, &system);
+    if (*row_n != 0) {
+        return ROD_E_PIVOT; /* and the model is as it was */
+    }
     const int n = params->links_n;
     const float dt = params->tick_s;
-    const float half_dt = 0.5f * dt;
     const float dt2 = dt * dt;
     const bool paper = params->scheme == ROD_SCHEME_PAPER;
-
+    model->system = system;
     model->links_n = n;
     model->held_n = params->hold_n < n ? params->hold_n : n;
     model->paper_scheme = paper;
     model->tick_squared_s2 = dt2;
     for (int i = 0; i < n; i++) {
-        const float drag = half_dt * params->drag[i];
-        const float damper = half_dt * params->damper[i];
+        const float drag = 0.5f * dt * params->drag[i];
+        const float damper = 0.5f * dt * params->damper[i];
         model->row[i] = (contour_row){
             .momentum = params->inertia[i] - drag - (paper ? 2.0f * damper : damper),
             .spring = dt2 * params->spring[i],
@@ -32,28 +64,12 @@ rod_error contour_prepare(contour *model, const rod_params *params, int *row_n)
             model->held_damper[i] = damper;
         }
     }
-
-    /* M: K's bands are D1' beta D1 + D2' eta D2 (+ diag k), D1 and D2 the first and second difference.
-     * The midpoint scheme averages K over three time levels, so a quarter of it is implicit; the
-     * paper's takes the internal energy wholly implicit and the spring explicit (Eq. 5). */
-    float diagonal[ROD_MAX_LINKS], off1[ROD_MAX_LINKS], off2[ROD_MAX_LINKS];
-    const float share = paper ? 1.0f : 0.25f;
-    for (int i = 0; i < n; i++) {
-        const contour_row *row = model->row;
-        const float eta_left = i >= 1 ? row[i - 1].smoothing : 0.0f;
-        const float eta_right = i + 1 < n ? row[i + 1].smoothing : 0.0f;
-        const float beta_right = i + 1 < n ? row[i + 1].coupling : 0.0f;
-        const float spring = paper ? 0.0f : row[i].spring;
-        const float rate = half_dt * (params->drag[i] + (paper ? 0.0f : params->damper[i]));
-        diagonal[i] = params->inertia[i] + rate +
-                      share * (spring + row[i].coupling + beta_right + eta_left +
-                               4.0f * row[i].smoothing + eta_right);
-        off1[i] = -share * (row[i].coupling + 2.0f * row[i].smoothing + 2.0f * eta_left);
-        off2[i] = share * eta_left;
-    }
-    *row_n = penta_factor(&model->system, n, diagonal, off1, off2);
-    return *row_n == 0 ? ROD_OK : ROD_E_PIVOT;
+    return ROD_OK;
 }
+
+/* Inlined wherever the step needs it: small structures that are passed to or returned from a call go
+ * through memory, and the step waits for them. */
+#define INLINE static inline __attribute__((always_inline))
 
 /* A held link, as it stands in its parent's axes before the base moves. */
 typedef struct {
@@ -62,7 +78,7 @@ typedef struct {
     float length_m;
 } held_link;
 
-static held_link hold_link(const rod_joint angle_rad, float length_m)
+INLINE held_link hold_link(const rod_joint angle_rad, float length_m)
 {
     held_link held;
     held.trig = kinematics_trig(angle_rad);
@@ -72,7 +88,7 @@ static held_link hold_link(const rod_joint angle_rad, float length_m)
 }
 
 /* How far a point fixed in the world moves in the base's axes. */
-static vec3 displacement(const rod_motion *motion, vec3 point_m)
+INLINE vec3 displacement(const rod_motion *motion, vec3 point_m)
 {
     return vec3_add(motion->shift_m, quat_displacement(motion->turn, point_m));
 }
@@ -81,7 +97,7 @@ static vec3 displacement(const rod_motion *motion, vec3 point_m)
  * Written with differences only, so that a small displacement gives a small turn with all its digits;
  * to first order it is Eq. 10 (rows in their right order). Where the far end has met the joint there is
  * no direction: returns false, and no turn. */
-static bool turn_of_link(const held_link *held, vec3 moved, rod_joint delta_rad)
+INLINE bool turn_of_link(const held_link *held, vec3 moved, rod_joint delta_rad)
 {
     const trig_pair theta = held->trig.theta, phi = held->trig.phi;
     const float aside = moved.x * theta.cos - moved.z * theta.sin; /* across the link, level */
@@ -107,43 +123,41 @@ static bool turn_of_link(const held_link *held, vec3 moved, rod_joint delta_rad)
 
 /* The turn of the second held joint (Fig. 6b): node 1 has moved onto the new direction of link 1,
  * node 2 has stayed. Not inlined: most rods hold one joint and should not pay this one's registers. */
-static __attribute__((noinline)) void turn_of_second_link(const held_link held[2],
-                                                          const rod_joint *angle_rad,
-                                                          const rod_motion *motion,
-                                                          rod_joint delta_rad[2])
+static __attribute__((noinline)) void
+turn_of_second_link(const contour *model, const held_link *first, const rod_joint *angle_rad,
+                    const rod_motion *motion, rod_joint delta_rad[2])
 {
     static const frame3 BASE = {{1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
-    const frame3 link1 = kinematics_turn(&BASE, &held[0].trig);
-    const vec3 node2 = vec3_add(held[0].link_m, frame3_to_parent(&link1, held[1].link_m));
+    const held_link second = hold_link(angle_rad[1], model->length_m[1]);
+    const frame3 link1 = kinematics_turn(&BASE, &first->trig);
+    const vec3 node2 = vec3_add(first->link_m, frame3_to_parent(&link1, second.link_m));
 
     const rod_joint turned = {angle_rad[0][ROD_THETA] + delta_rad[0][ROD_THETA],
                               angle_rad[0][ROD_PHI] + delta_rad[0][ROD_PHI]};
     const joint_trig turned_trig = kinematics_trig(turned);
     const frame3 link1_new = kinematics_turn(&BASE, &turned_trig);
-    const vec3 node1_new = vec3_scale(link1_new.z, held[0].length_m);
+    const vec3 node1_new = vec3_scale(link1_new.z, first->length_m);
     const vec3 node2_new = vec3_add(node2, displacement(motion, node2));
 
     const vec3 link2_new = frame3_from_parent(&link1_new, vec3_sub(node2_new, node1_new));
-    (void)turn_of_link(&held[1], vec3_sub(link2_new, held[1].link_m), delta_rad[1]);
+    (void)turn_of_link(&second, vec3_sub(link2_new, second.link_m), delta_rad[1]);
 }
 
-static void base_motion(int held_n, const held_link held[2], const rod_joint *angle_rad,
+INLINE void base_motion(const contour *model, const held_link *first, const rod_joint *angle_rad,
                         const rod_motion *motion, rod_joint delta_rad[2])
 {
     delta_rad[1][ROD_THETA] = delta_rad[1][ROD_PHI] = 0.0f;
-    if (turn_of_link(&held[0], displacement(motion, held[0].link_m), delta_rad[0]) && held_n == 2) {
-        turn_of_second_link(held, angle_rad, motion, delta_rad);
+    if (turn_of_link(first, displacement(motion, first->link_m), delta_rad[0]) &&
+        model->held_n == 2) {
+        turn_of_second_link(model, first, angle_rad, motion, delta_rad);
     }
 }
 
 void contour_base_motion(const contour *model, const rod_joint *angle_rad, const rod_motion *motion,
                          rod_joint delta_rad[2])
 {
-    held_link held[2];
-    for (int i = 0; i < model->held_n; i++) {
-        held[i] = hold_link(angle_rad[i], model->length_m[i]);
-    }
-    base_motion(model->held_n, held, angle_rad, motion, delta_rad);
+    const held_link first = hold_link(angle_rad[0], model->length_m[0]);
+    base_motion(model, &first, angle_rad, motion, delta_rad);
 }
 
 /* b = momentum g - dt^2 K y, with K y as the gradient of the bending energy: every difference is
@@ -200,13 +214,10 @@ rod_error contour_step(const contour *model, const contour_state *from, contour_
     const int held_n = model->held_n;
     const bool paper = model->paper_scheme;
 
-    held_link held[2]; /* both base motions start from the same angles */
-    for (int i = 0; i < held_n; i++) {
-        held[i] = hold_link(x[i], model->length_m[i]);
-    }
-    rod_joint delta[2], delta_previous[2];
-    base_motion(held_n, held, x, now, delta);
-    base_motion(held_n, held, x, previous, delta_previous);
+    const held_link first = hold_link(x[0], model->length_m[0]);
+    rod_joint delta[2], delta_previous[2]; /* both base motions start from the same angles */
+    base_motion(model, &first, x, now, delta);
+    base_motion(model, &first, x, previous, delta_previous);
 
     /* The angles at which the bending energy pulls. Midpoint: with the quarter of the new increment
      * that M holds, K sees (x_old + 2 x + x_new) / 4, x as the base has turned it. Paper: v = x + delta. */

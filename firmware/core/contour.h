@@ -40,7 +40,7 @@ typedef struct {
 } contour_state;
 
 /* Fold and factor; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n
- * set to the 1-based row. */
+ * set to the 1-based row and *model as it was. */
 rod_error contour_prepare(contour *model, const rod_params *params, int *row_n);
 
 /* How much the held joints' angles change when the base moves while the links' far ends stay where

@@ -10,16 +10,6 @@ rod_motion kinematics_motion(const rod_pose *from, const rod_pose *to)
     };
 }
 
-joint_trig kinematics_trig(const rod_joint angles_rad)
-{
-    return (joint_trig){trig_sincos(angles_rad[ROD_THETA]), trig_sincos(angles_rad[ROD_PHI])};
-}
-
-vec3 kinematics_direction(const joint_trig *t)
-{
-    return (vec3){t->phi.cos * t->theta.sin, t->phi.sin, t->phi.cos * t->theta.cos};
-}
-
 frame3 kinematics_turn(const frame3 *parent, const joint_trig *t)
 {
     /* about y by theta: x and z turn in their plane ... */

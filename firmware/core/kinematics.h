@@ -34,15 +34,21 @@ typedef struct {
 
 rod_motion kinematics_motion(const rod_pose *from, const rod_pose *to);
 
-joint_trig kinematics_trig(const rod_joint angles_rad);
+static inline joint_trig kinematics_trig(const rod_joint angles_rad)
+{
+    return (joint_trig){trig_sincos(angles_rad[ROD_THETA]), trig_sincos(angles_rad[ROD_PHI])};
+}
 
 /* The link's unit direction in its parent's axes (Eq. 6). */
-vec3 kinematics_direction(const joint_trig *t);
+static inline vec3 kinematics_direction(const joint_trig *t)
+{
+    return (vec3){t->phi.cos * t->theta.sin, t->phi.sin, t->phi.cos * t->theta.cos};
+}
 
 /* A frame turned through a joint: the parent's axes in, the link's own axes out. */
 frame3 kinematics_turn(const frame3 *parent, const joint_trig *t);
 
-/* Nodes 0 ... links_n in the world; node 0 is the base. About 90 instructions a link. */
+/* Nodes 0 ... links_n in the world; node 0 is the base. About 135 instructions a link. */
 void kinematics_nodes(const rod_pose *base, const rod_joint *angles_rad, const float *length_m,
                       int links_n, vec3 *nodes_m);
 

@@ -34,9 +34,8 @@ int penta_factor(penta *factor, int rows_n, const float *diagonal, const float *
 /* One row of the forward pass. `older` is y of the row before last, `newer` of the last; this row's
  * overwrites the older, so that the caller passes the two crosswise from row to row and nothing is
  * moved about. Coefficients are read before b is written: the compiler cannot know they are apart. */
-static inline __attribute__((always_inline)) void forward_row(const penta_row *row, float *b,
-                                                              float *older, const float *newer,
-                                                              int width)
+static inline __attribute__((always_inline)) void
+forward_row(const penta_row *row, float *b, float *older, const float *newer, int width)
 {
     const float below1 = row[0].below1, below2 = row[0].below2;
     for (int r = 0; r < width; r++) {
@@ -48,9 +47,8 @@ static inline __attribute__((always_inline)) void forward_row(const penta_row *r
 }
 
 /* The same for the backward pass, with the rows below. */
-static inline __attribute__((always_inline)) void backward_row(const penta_row *row, float *b,
-                                                               float *older, const float *newer,
-                                                               int width)
+static inline __attribute__((always_inline)) void
+backward_row(const penta_row *row, float *b, float *older, const float *newer, int width)
 {
     const float above1 = row[1].below1, above2 = row[2].below2;
     const float inverse_pivot = row[0].inverse_pivot;

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* Takes the parameters over and refactors; on an error nothing but r->model has changed. */
+/* Takes the parameters over and refactors, or leaves the rod as it was. */
 static rod_error prepare(rod *r, const rod_params *params, rod_refusal *refusal)
 {
     const rod_error error = rod_params_check(params, refusal);
@@ -49,8 +49,6 @@ rod_error rod_set_params(rod *r, const rod_params *params, rod_refusal *refusal)
     const float old_tick_s = r->params.tick_s;
     const rod_error error = prepare(r, params, refusal);
     if (error != ROD_OK) {
-        int row_n; /* the old parameters have been factored before, so they can be again */
-        (void)contour_prepare(&r->model, &r->params, &row_n);
         return error;
     }
     contour_state *state = &r->state[r->current];
@@ -77,7 +75,7 @@ rod_error rod_set_params(rod *r, const rod_params *params, rod_refusal *refusal)
 void rod_reset(rod *r)
 {
     memset(r->state, 0, sizeof r->state);
-    r->current = 0;
+    r->current = r->swept = 0;
     r->started = false;
     r->motion = NO_MOTION;
 }
@@ -129,6 +127,20 @@ static __attribute__((noinline)) rod_error step_with_force(rod *r, const rod_mot
                         now, (const rod_joint *)torque_nm);
 }
 
+/* A rod at rest decays for ever, into numbers so small that some processors take a hundred times as
+ * long over them. One joint a tick is cleared of what is too small to matter. */
+static void sweep(rod *r)
+{
+    contour_state *state = &r->state[r->current];
+    r->swept = r->swept + 1 < r->params.links_n ? r->swept + 1 : 0;
+    for (int axis = 0; axis < 2; axis++) {
+        float *angle = &state->angle_rad[r->swept][axis];
+        float *increment = &state->increment_rad[r->swept][axis];
+        *angle = trig_abs(*angle) < 1e-30f ? 0.0f : *angle;
+        *increment = trig_abs(*increment) < 1e-30f ? 0.0f : *increment;
+    }
+}
+
 rod_error rod_step(rod *r, const rod_pose *base)
 {
     if (!is_pose(base)) {
@@ -148,6 +160,7 @@ rod_error rod_step(rod *r, const rod_pose *base)
         r->current = 1 - r->current;
         r->base = *base;
         r->motion = now;
+        sweep(r);
     }
     return error;
 }

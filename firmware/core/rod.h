@@ -37,7 +37,7 @@ typedef struct {
     contour model;
     contour_state
         state[2]; /* a step reads one and writes the other, so a failed one spoils nothing */
-    int current;
+    int current, swept;
     bool started; /* a base pose has been seen */
     rod_pose base;
     rod_motion motion; /* of the base, in the last tick */
@@ -69,7 +69,7 @@ rod_error rod_step(rod *r, const rod_pose *base);
 const rod_joint *rod_angles(const rod *r);
 
 /* Nodes 0 ... links_n in the world, m, into the caller's links_n + 1 entries. Returns that number,
- * or 0 before the first pose. About 90 instructions a link: ask when you need them. */
+ * or 0 before the first pose. About 135 instructions a link: ask when you need them. */
 int rod_nodes(const rod *r, vec3 *nodes_m);
 
 /* The parameters in force. */

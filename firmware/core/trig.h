@@ -2,7 +2,8 @@
  *
  * No libm: its functions differ between C libraries. Here there is only + - * / and a square root,
  * each correctly rounded by IEEE 754, in one fixed order (build with -ffp-contract=off). Polynomials:
- * S. Moshier's Cephes single-precision set. Pure, re-entrant, no tables; NaN in, NaN out.
+ * S. Moshier's Cephes single-precision set (sinf.c, atanf.c, asinf.c). Pure, re-entrant, no tables; NaN
+ * in, NaN out. What a step calls is inline: a pair returned from a call goes through memory.
  *
  * Worst errors, measured against long double over every float of the range (tests: `trig`, and
  * `trig_exhaustive` under the label slow):
@@ -22,11 +23,6 @@ typedef struct {
     float sin, cos;
 } trig_pair;
 
-trig_pair trig_sincos(float angle_rad);
-
-/* The angle of the point (x, y) in (-pi, pi]; atan2(0, 0) is 0, and -0 counts as 0. */
-float trig_atan2(float y, float x);
-
 /* x is clamped to [-1, 1]. */
 float trig_asin(float x);
 
@@ -39,6 +35,71 @@ static inline float trig_sqrt(float x)
 static inline float trig_abs(float x)
 {
     return __builtin_fabsf(x);
+}
+
+static inline trig_pair trig_sincos(float angle_rad)
+{
+    /* Adding and taking away 1.5 * 2^23 rounds to the nearest integer without a cast, whose result
+     * would differ between machines when out of range. */
+    const float rounder = 12582912.0f;
+    const float turns = (angle_rad * (1.0f / TRIG_HALF_PI) + rounder) - rounder;
+    /* pi/2 in three parts (Cody and Waite): the first two have so few bits that n times them is exact */
+    const float r = ((angle_rad - turns * 1.5703125f) - turns * 4.837512969970703125e-4f) -
+                    turns * 7.54978995489188216e-8f;
+    const float z = r * r;
+
+    const float s = ((-1.9515295891e-4f * z + 8.3321608736e-3f) * z - 1.6666654611e-1f) * z * r + r;
+    const float c =
+        ((2.443315711809948e-5f * z - 1.388731625493765e-3f) * z + 4.166664568298827e-2f) * z * z -
+        0.5f * z + 1.0f;
+
+    if (!(trig_abs(turns) <= 8192.0f)) { /* far outside, or NaN: the quadrant is unknown */
+        return (trig_pair){s, c};
+    }
+    switch ((int)turns & 3) {
+    case 0:
+        return (trig_pair){s, c};
+    case 1:
+        return (trig_pair){c, -s};
+    case 2:
+        return (trig_pair){-s, -c};
+    default:
+        return (trig_pair){-c, s};
+    }
+}
+
+/* The angle of the point (x, y) in (-pi, pi]; atan2(0, 0) is 0, and -0 counts as 0. One division for
+ * any point: the octant is chosen before dividing, so that the polynomial sees |t| <= tan(pi/8). */
+static inline float trig_atan2(float y, float x)
+{
+    const float ay = trig_abs(y);
+    const float ax = trig_abs(x);
+    float above, below, offset;
+    if (ay <= 0.41421356f * ax) {
+        above = ay;
+        below = ax;
+        offset = 0.0f;
+    } else if (ay <= 2.41421356f * ax) {
+        above = ay - ax;
+        below = ay + ax;
+        offset = 0.5f * TRIG_HALF_PI;
+    } else {
+        above = -ax;
+        below = ay;
+        offset = TRIG_HALF_PI;
+    }
+    if (!(below > 0.0f)) { /* both are zero, or one is not a number */
+        return above + below;
+    }
+    const float t = above / below;
+    const float z = t * t;
+    const float p = (((8.05374449538e-2f * z - 1.38776856032e-1f) * z + 1.99777106478e-1f) * z -
+                     3.33329491539e-1f) *
+                        z * t +
+                    t;
+    const float first_quadrant = offset + p;
+    const float right_or_left = x < 0.0f ? TRIG_PI - first_quadrant : first_quadrant;
+    return y < 0.0f ? -right_or_left : right_or_left;
 }
 
 #endif

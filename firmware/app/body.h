@@ -1,0 +1,64 @@
+/* body.h - the rod and the servos that follow it: everything of the device that computes angles.
+ *
+ * One tick takes one body_input and gives goals; nothing else gets in. So a log of body_inputs, replayed, gives
+ * the same goals to the bit (limber-sim replay --per-tick), and the rest of the device (line, clock,
+ * states) can be tested without the rod.
+ *
+ *     base pose -> rod_step -> joint angles -> targets -> blend -> limits -> goals
+ *
+ * The rod is stepped at every tick, the servos are served every servo_period_ticks. Caller-owned, no heap; main
+ * loop only; 20 KB at 64 links.
+ */
+#ifndef LIMBER_BODY_H
+#define LIMBER_BODY_H
+
+#include "params.h"
+#include "rod.h"
+#include "servo_blend.h"
+#include "servo_map.h"
+#include "supervisor.h"
+
+/* All that happens to the body in one tick, in the order in which it is carried out. Plain values: a log
+ * may keep it as it lies in memory. */
+typedef struct {
+    uint32_t blend_us; /* start a blend from rest over this time; 0: none */
+    uint8_t follow;    /* supervisor_follow, from this tick on */
+    bool new_params;   /* body_change has been called since the last tick (for logs) */
+    bool placed;       /* body_place has (likewise) */
+    bool has_base;     /* step the rod with this base */
+    bool restart;      /* after laying it straight and at rest */
+    rod_pose base;
+} body_input;
+
+typedef struct {
+    rod rod;
+    servo_map map;
+    servo_blend blend;
+    float blend_s;
+    int servo_period_ticks, ticks_to_servos;
+    uint8_t follow;
+    bool goals_new;      /* the servos were served in the last tick */
+    bool finite;         /* the last rod_step was */
+    uint32_t limited;    /* SERVO_... flags of the last service */
+} body;
+
+/* False with *why filled where the parameters do not go together; b is then not to be used. */
+bool body_init(body *b, const params_set *set, params_refusal *why);
+
+/* Other parameters from the next tick on. all_new: the servo side too (only without torque: goals start from
+ * straight); otherwise the rod's, through a blend from motion over blend_s. On false nothing has changed. */
+bool body_change(body *b, const params_set *set, bool all_new, params_refusal *why);
+
+/* The goals are where the servos are: before they get torque. Returns SERVO_OK or SERVO_E_POSITION. */
+servo_error body_place(body *b, const float *positions_rad);
+
+/* One tick. */
+void body_tick(body *b, const body_input *input);
+
+/* Goals of the servos, rad of the shaft, map.servos_n of them. */
+const float *body_goals(const body *b);
+
+/* The same as joint angles, links_n rows: what ANGLES reports. */
+void body_angles(const body *b, rod_joint *angles_rad);
+
+#endif

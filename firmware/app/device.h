@@ -1,0 +1,100 @@
+/* device.h - the whole device: one tick from bytes to servo goals and back, behind hal.h.
+ *
+ *     device_init(&device, &hal, &config);
+ *     every config.tick_s: device_tick(&device);
+ *
+ * The same code on the board, in the simulator and in the tests. Nothing here knows a register or waits for
+ * anything; a tick's work is bounded. Caller-owned, no heap; all of it from the main loop.
+ *
+ * One tick, top to bottom in device_tick: receive -> pose -> states -> rod and servos -> report.
+ * What each message does is in commands.c, what is sent unasked in telemetry.c.
+ */
+#ifndef LIMBER_DEVICE_H
+#define LIMBER_DEVICE_H
+
+#include "body.h"
+#include "faults.h"
+#include "hal.h"
+#include "link.h"
+#include "params.h"
+#include "pose_input.h"
+#include "settings.h"
+#include "supervisor.h"
+
+/* A watcher of everything that happens to the body, tick by tick: the simulator's log. Any may be NULL.
+ * changed: params and whether all of them are new; placed: where the servos are. */
+typedef struct {
+    void *context;
+    void (*changed)(void *context, const params_set *set, bool all_new);
+    void (*placed)(void *context, const float *positions_rad, int servos_n);
+    void (*ticked)(void *context, const body_input *input, const body *b);
+} device_watcher;
+
+typedef struct {
+    float tick_s;        /* what device_tick is called with */
+    float tick_max_hz;   /* the fastest that this hardware could do, for HELLO */
+    uint32_t line_baud;  /* 0: the line has no rate */
+    uint32_t features;   /* FEATURE_... */
+    const char *name;    /* at most 16 bytes: "limber-sim" */
+    const char *build;   /* at most 24 bytes: version and commit */
+    int links_n;         /* of the rod in the hand, unless settings say otherwise */
+    device_watcher watcher;
+} device_config;
+
+/* The answer to a request that changes something, for when it is asked again. */
+typedef struct {
+    uint16_t request_id;
+    uint8_t type, reason; /* reason 0: ACK */
+} device_answer;
+
+enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 16 * 1024 };
+
+typedef struct {
+    const hal *hal;
+    device_config config;
+    device_link link;
+    params params;
+    pose_input poses;
+    supervisor supervisor;
+    fault_log faults;
+    settings settings;
+    body body;
+    body_input input; /* of this tick */
+
+    uint32_t now_us, tick;
+    uint64_t uptime_us;
+    bool arm, disarm, clear, estop; /* asked for in this tick */
+    bool self_test_passed;
+    uint8_t reboot; /* 1 + REBOOT_..., once the answer is out; 0: not asked */
+    uint16_t save_request; /* the SAVE under way; 0: none */
+    bool unsaved;
+    device_answer answers[DEVICE_ANSWERS_KEPT_N];
+    int answers_next;
+    uint32_t commands_done, commands_refused, commands_repeated;
+
+    pose_tick pose; /* of this tick */
+    uint32_t solved_us;
+    uint32_t to_angles_ticks, to_nodes_ticks, to_heartbeat_ticks, to_stats_ticks;
+    uint32_t limited_ticks[SERVO_LIMITERS_N], deadline_misses, holds;
+    uint32_t tick_max_us, tick_time_us, tick_worst_us, ticks_timed_n; /* ever; since the last heartbeat */
+    uint32_t fault_seen; /* latched causes already told */
+
+    uint8_t settings_bytes[DEVICE_SETTINGS_BYTES];
+} device;
+
+/* Loads settings (this may erase a flash sector: 2 s), prepares everything, says HELLO and BOOT_REPORT. */
+void device_init(device *d, const hal *hal, const device_config *config, const hal_boot *boot);
+
+void device_tick(device *d);
+
+/* The pieces of it, in files of their own. */
+bool device_apply_params(device *d, bool all_new, params_refusal *why); /* what is in force, to all parts */
+void commands_take(device *d, const message *m, const frame *header); /* commands.c */
+void commands_end_tick(device *d);                                     /* a SAVE under way, a reboot due */
+void telemetry_boot(device *d, const hal_boot *boot);                  /* telemetry.c */
+void telemetry_send(device *d);
+void telemetry_stats(device *d, uint16_t request_id);
+void telemetry_hello(device *d, uint16_t request_id);
+void telemetry_log(device *d, uint8_t level, const char *text);
+
+#endif

@@ -1,0 +1,214 @@
+/* device_command.c - limber-sim device: a board without a board, for the tool that will talk to the real one. */
+#include <errno.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "host_device.h"
+#include "options.h"
+#include "sim.h"
+
+enum {
+    OPTION_PTY = 1,
+    OPTION_TCP,
+    OPTION_SPEED,
+    OPTION_LOG,
+    OPTION_FLASH,
+    OPTION_LINKS,
+    OPTION_INJECT,
+    OPTION_SECONDS,
+    OPTION_RATE,
+};
+
+static const char EXAMPLES[] =
+    "  limber-sim device --pty build/rod                        # one terminal\n"
+    "  limber stream --port pty:build/rod build/tracks/star.txt # another\n"
+    "  limber-sim device --tcp 127.0.0.1:5555 --flash build/flash.bin --log build/body.log\n"
+    "  limber-sim device --pty build/rod --inject noise@2+1:0.001 --inject servo@5+0.1\n\n"
+    "Ends with Ctrl-C, and then prints the hash of all angles; limber-sim replay --per-tick LOG comes to "
+    "the same.\n";
+
+typedef struct {
+    char *pty, *tcp, *log, *flash;
+    bool at_full_speed;
+    long links_n;
+    double seconds, rate_hz;
+} choices;
+
+static volatile sig_atomic_t asked_to_stop;
+
+static void stop(int signal_number)
+{
+    (void)signal_number;
+    asked_to_stop = 1;
+}
+
+static int take_text(char **to, char *text)
+{
+    free(*to);
+    *to = strdup(text);
+    return SIM_OK;
+}
+
+static int take_number(const char *option, const char *text, double min, double max, double *to)
+{
+    char *end;
+    *to = strtod(text, &end);
+    return end != text && *end == '\0' && *to >= min && *to <= max
+               ? SIM_OK
+               : sim_complain("%s %.40s: must be a number from %g to %g", option, text, min, max);
+}
+
+static int take_option(choices *c, injection *faults, int option, char *text)
+{
+    double number = 0.0;
+    int result = SIM_OK;
+    switch (option) {
+    case OPTION_PTY:
+        return take_text(&c->pty, text);
+    case OPTION_TCP:
+        return take_text(&c->tcp, text);
+    case OPTION_LOG:
+        return take_text(&c->log, text);
+    case OPTION_FLASH:
+        return take_text(&c->flash, text);
+    case OPTION_INJECT:
+        return injection_add(faults, text);
+    case OPTION_SECONDS:
+        return take_number("--seconds", text, 0.0, 1e9, &c->seconds);
+    case OPTION_RATE:
+        return take_number("--rate", text, 100.0, 2000.0, &c->rate_hz);
+    case OPTION_LINKS:
+        result = take_number("--links", text, 1.0, (double)ROD_MAX_LINKS, &number);
+        c->links_n = (long)number;
+        return result;
+    default:
+        c->at_full_speed = strcmp(text, "max") == 0;
+        return c->at_full_speed || strcmp(text, "real") == 0
+                   ? SIM_OK
+                   : sim_complain("--speed %.40s: must be real or max", text);
+    }
+}
+
+static int take_options(poptContext context, choices *c, injection *faults, bool *help)
+{
+    *help = false;
+    for (int option; (option = options_next(context, "device", EXAMPLES)) != 0;) {
+        if (option < 0) {
+            return SIM_BAD_INPUT;
+        }
+        if (option == OPTION_HELP) {
+            *help = true;
+            return SIM_OK;
+        }
+        char *text = poptGetOptArg(context);
+        const int result = take_option(c, faults, option, text);
+        free(text);
+        if (result != SIM_OK) {
+            return result;
+        }
+    }
+    if (poptPeekArg(context) != NULL) {
+        return sim_complain("device: unexpected '%s'; try limber-sim device --help", poptPeekArg(context));
+    }
+    return (c->pty == NULL) == (c->tcp == NULL)
+               ? sim_complain("device: give either --pty LINK or --tcp ADDRESS:PORT")
+               : SIM_OK;
+}
+
+static int open_all(host_device *h, const choices *c)
+{
+    int port = 0;
+    int result = flash_file_open(&h->flash, c->flash);
+    if (result == SIM_OK) {
+        result = body_log_open(&h->log, c->log);
+    }
+    if (result == SIM_OK) {
+        result = c->pty != NULL ? line_open_pty(&h->line, c->pty) : line_open_tcp(&h->line, c->tcp, &port);
+    }
+    if (result == SIM_OK && c->pty != NULL) {
+        printf("limber-sim device: limber ... --port pty:%s\n", c->pty);
+    } else if (result == SIM_OK) {
+        printf("limber-sim device: limber ... --port tcp:127.0.0.1:%d\n", port);
+    }
+    fflush(stdout);
+    return result;
+}
+
+/* The device's clock follows this machine's, tick by tick; late ticks are made up for. */
+static void run(host_device *h, const choices *c)
+{
+    const long tick_ns = (long)(1e9 / c->rate_hz + 0.5);
+    struct timespec next;
+    clock_gettime(CLOCK_MONOTONIC, &next);
+    while (!asked_to_stop && (c->seconds <= 0.0 || h->elapsed_s < c->seconds)) {
+        host_device_tick(h);
+        if (c->at_full_speed) {
+            continue;
+        }
+        next.tv_nsec += tick_ns;
+        if (next.tv_nsec >= 1000000000L) {
+            next.tv_nsec -= 1000000000L;
+            next.tv_sec++;
+        }
+        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
+    }
+}
+
+static int run_device(const choices *c, const injection *faults)
+{
+    host_device *h = calloc(1, sizeof *h);
+    if (h == NULL) {
+        return sim_give_up("out of memory");
+    }
+    h->injection = *faults;
+    h->line = (line){.fd = -1, .listen_fd = -1, .kept_fd = -1};
+    servo_plant_init(&h->plant, 3, 15.0f);
+    int result = open_all(h, c);
+    if (result == SIM_OK) {
+        signal(SIGINT, stop);
+        signal(SIGTERM, stop);
+        signal(SIGPIPE, SIG_IGN);
+        host_device_start(h, (float)(1.0 / c->rate_hz), (int)c->links_n);
+        run(h, c);
+        printf("ticks      %" PRIu32 "\nhash       %016" PRIx64 "\n", h->log.ticks_n, h->log.hash);
+    }
+    const int closed = body_log_close(&h->log, c->log);
+    line_close(&h->line);
+    free(h);
+    return result == SIM_OK ? closed : result;
+}
+
+int sim_device_command(int argc, const char **argv)
+{
+    const struct poptOption table[] = {
+        {"pty", 0, POPT_ARG_STRING, NULL, OPTION_PTY, "be found as a serial port under this name", "LINK"},
+        {"tcp", 0, POPT_ARG_STRING, NULL, OPTION_TCP, "listen there for one tool at a time", "ADDRESS:PORT"},
+        {"speed", 0, POPT_ARG_STRING, NULL, OPTION_SPEED, "real time, or as fast as it goes (real)", "real|max"},
+        {"log", 0, POPT_ARG_STRING, NULL, OPTION_LOG, "keep the exact pose of every tick, and all else that bends the rod", "FILE"},
+        {"flash", 0, POPT_ARG_STRING, NULL, OPTION_FLASH, "keep settings in this file", "FILE"},
+        {"links", 0, POPT_ARG_STRING, NULL, OPTION_LINKS, "links of the rod (4)", "N"},
+        {"rate", 'r', POPT_ARG_STRING, NULL, OPTION_RATE, "ticks a second (1000)", "HZ"},
+        {"inject", 0, POPT_ARG_STRING, NULL, OPTION_INJECT, "let something go wrong: noise, drop, stall, servo, estop, cut, clock", "KIND@START[+SECONDS][:AMOUNT]"},
+        {"seconds", 0, POPT_ARG_STRING, NULL, OPTION_SECONDS, "end after so long on the device's clock", "S"},
+        OPTIONS_END,
+    };
+    choices c = {.links_n = 4, .rate_hz = 1000.0};
+    injection faults = {.faults_n = 0};
+    argv[0] = "limber-sim device"; /* what the help calls it */
+    poptContext context = poptGetContext(argv[0], argc, argv, table, 0);
+    bool help;
+    int result = take_options(context, &c, &faults, &help);
+    if (result == SIM_OK && !help) {
+        result = run_device(&c, &faults);
+    }
+    free(c.pty);
+    free(c.tcp);
+    free(c.log);
+    free(c.flash);
+    poptFreeContext(context);
+    return result;
+}

@@ -1,0 +1,53 @@
+/* fake_device.h - a device that does what a test wants, not what a rod needs: the wire from the device's end,
+ * by the same proto/, with a choice of misbehaviour. It tells on stdout what it got. */
+#ifndef LIMBER_FAKE_DEVICE_H
+#define LIMBER_FAKE_DEVICE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "fake_line.h"
+#include "messages.h"
+
+enum { FAKE_PARAMS_N = 6, FAKE_JOINTS_N = 3 };
+
+/* How it misbehaves; all zeros: not at all. */
+typedef struct {
+    const char *pty_link, *text; /* text: says only that, like a board of another make */
+    bool mute, deaf, version_nack, other_hash, garbage, reboots, still;
+    int major, state, tick_hz, angles_hz, nack_type, nack_reason;
+    int drop_requests;            /* ignores each request so many times */
+    int drop_poses, reject_poses; /* every so-many-th */
+    int lie;                      /* counts so many fewer accepted poses in the end */
+    int silent_after, close_after, fall_after, fall_to; /* poses; the state then */
+    int reopen_ms;
+    float hold_ms;
+} fake_ways;
+
+typedef struct {
+    fake_ways ways;
+    fake_line line;
+    frame_decoder decoder;
+    uint8_t session, state, fault;
+    uint16_t seq[256];
+    message_stats stats;
+    uint32_t start_us, armed_us, tick;
+    bool any_pose, silent, greeted;
+    uint16_t newest_seq;
+    uint32_t newest_us, poses_n;
+    uint16_t last_request;
+    int ignored_n;
+    float in_force[FAKE_PARAMS_N][FAKE_JOINTS_N], staged[FAKE_PARAMS_N][FAKE_JOINTS_N];
+} fake_device;
+
+uint32_t fake_now_us(void);
+void fake_send(fake_device *d, const message *m);
+
+/* A line on stdout for the test. */
+void fake_tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* fake_requests.c: everything with a request id but HELLO. */
+void fake_requests_init(fake_device *d);
+void fake_request(fake_device *d, const message *m);
+
+#endif

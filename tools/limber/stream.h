@@ -1,0 +1,96 @@
+/* stream.h - poses to the device, each at its moment, until they end, somebody stops it, or the device does.
+ *
+ *     begin     who is there, its counters, whether the source is fast enough
+ *     arm       the first pose again and again until the device follows it (live lines: while they come)
+ *     play      every pose at its own time; its age says by how much it was late
+ *     end       disarm, counters again, where every pose went
+ */
+#ifndef LIMBER_STREAM_H
+#define LIMBER_STREAM_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "account.h"
+#include "angles_csv.h"
+#include "delays.h"
+#include "session.h"
+#include "source.h"
+
+typedef struct {
+    const char *port;
+    bool arm;       /* before the first pose, and disarm at the end */
+    bool reconnect; /* go on after the device was lost ... */
+    bool rearm;     /* ... and arm it again */
+    double speed;   /* times the track's own pace; 0: as fast as the line takes it */
+} stream_options;
+
+typedef enum {
+    ARMING_OFF,  /* not wanted, or not any more */
+    ARMING_WAIT, /* until the device calls the stream good */
+    ARMING_ASKED,
+    ARMING_BLEND, /* torque is on, the rod comes to where it should be */
+    ARMING_DONE,
+    ARMING_FAILED, /* complained of */
+} arming_phase;
+
+typedef struct {
+    stream_options options;
+    source *source;
+    angles_csv *csv;
+    session s;
+    bool in_session;
+
+    arming_phase arming;
+    uint64_t arming_us, asked_us; /* since when; when last asked */
+    bool maybe_armed;             /* an ARM has been sent and no DISARM answered */
+    uint8_t state;                /* newest from HEARTBEAT or ANGLES */
+
+    uint64_t captured_us; /* of the last pose sent */
+    uint64_t session_sent_n, lead_n, skipped_n, angles_n;
+    uint64_t played_n;        /* of the source */
+    double played_s;          /* source's time of the last one */
+    uint64_t play_us, end_us; /* our clock as the play began and ended */
+    uint64_t progress_us;
+    uint32_t pings_n;
+    bool pong_came;
+    int reconnects_n;
+
+    message_stats before;
+    account account;
+    pose_delays *delays;
+    char device[48]; /* name and build */
+    int links_n;
+    bool interrupted;
+} stream;
+
+/* Runs it all; what came of it is in *st. Returns an exit code after complaining of what went wrong.
+ * options, source and csv are the caller's. */
+int stream_run(stream *st, const stream_options *options, source *src, angles_csv *csv);
+void stream_free(stream *st);
+
+/* --- within stream: stream.c ------------------------------------------------------------------------ */
+
+/* Sends a pose captured at that moment of our clock. */
+void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us);
+
+/* --- stream_arming.c -------------------------------------------------------------------------------- */
+
+/* Refuses a source that the device would stop and start: SIM_OK or LIMBER_DEVICE after complaining. */
+int stream_check_pace(stream *st);
+
+void stream_begin_arming(stream *st);
+/* To be called often: brings the arming one step further if it can. */
+void stream_step_arming(stream *st);
+/* Whether the device has stopped following though nobody told it to; complains. */
+bool stream_was_dropped(stream *st);
+/* DISARM, if it may be armed. SIM_OK, or LIMBER_DEVICE after complaining. */
+int stream_disarm(stream *st);
+
+/* --- stream_summary.c ------------------------------------------------------------------------------- */
+
+void stream_show_progress(stream *st);
+void stream_print_summary(const stream *st);
+void stream_print_json(const stream *st, int exit_code);
+
+#endif
