@@ -12,47 +12,60 @@ static void copy_text(char *to, size_t room, const char *from)
     to[n] = '\0';
 }
 
-/* Requests that change something are done once, however often they arrive. */
-static const device_answer *answered_before(const device *d, uint16_t request_id, uint8_t type)
+/* Sends ACK or NACK (reason 0 is an ACK), and keeps it for when the request comes again. */
+static void answer(device *d, const message_nack *nack)
 {
-    for (int i = 0; i < DEVICE_ANSWERS_KEPT_N; i++) {
-        if (d->answers[i].request_id == request_id && d->answers[i].type == type && request_id != 0) {
-            return &d->answers[i];
-        }
+    message m = {.type = MESSAGE_NACK, .nack = *nack};
+    if (nack->reason == 0) {
+        m = (message){.type = MESSAGE_ACK, .ack = {nack->request_id, nack->answered}};
     }
-    return NULL;
+    (void)link_send(&d->link, &m, d->now_us);
 }
 
-static void remember(device *d, uint16_t request_id, uint8_t type, uint8_t reason)
+static void keep_answer(device *d, const message_nack *nack)
 {
-    d->answers[d->answers_next] = (device_answer){request_id, type, reason};
+    d->answers[d->answers_next] = *nack;
     d->answers_next = (d->answers_next + 1) % DEVICE_ANSWERS_KEPT_N;
 }
 
 static void acknowledge(device *d, uint16_t request_id, uint8_t type)
 {
-    const message m = {.type = MESSAGE_ACK, .ack = {.request_id = request_id, .answered = type}};
-    remember(d, request_id, type, 0);
+    const message_nack ack = {.request_id = request_id, .answered = type};
+    keep_answer(d, &ack);
     d->commands_done++;
-    (void)link_send(&d->link, &m, d->now_us);
+    answer(d, &ack);
 }
 
 static void refuse(device *d, uint16_t request_id, uint8_t type, const params_refusal *why)
 {
-    message m = {.type = MESSAGE_NACK,
-                 .nack = {.request_id = request_id,
-                          .answered = type,
-                          .reason = why->reason,
-                          .entry = (int16_t)why->entry,
-                          .value = why->value,
-                          .minimum = why->min,
-                          .maximum = why->max}};
-    copy_text(m.nack.field, sizeof m.nack.field, why->field != NULL ? why->field : "");
-    copy_text(m.nack.text, sizeof m.nack.text,
-              why->text != NULL ? why->text : message_value_meaning(&message_values_reasons, why->reason));
-    remember(d, request_id, type, why->reason);
+    message_nack nack = {.request_id = request_id,
+                         .answered = type,
+                         .reason = why->reason,
+                         .entry = (int16_t)why->entry,
+                         .value = why->value,
+                         .minimum = why->min,
+                         .maximum = why->max};
+    copy_text(nack.field, sizeof nack.field, why->field != NULL ? why->field : "");
+    copy_text(nack.text, sizeof nack.text,
+              why->text != NULL ? why->text
+                                : message_value_meaning(&message_values_reasons, why->reason));
+    keep_answer(d, &nack);
     d->commands_refused++;
-    (void)link_send(&d->link, &m, d->now_us);
+    answer(d, &nack);
+}
+
+/* Requests that change something are done once, however often they arrive: the same answer again. */
+static bool repeated(device *d, uint16_t request_id, uint8_t type)
+{
+    for (int i = 0; i < DEVICE_ANSWERS_KEPT_N; i++) {
+        const message_nack *before = &d->answers[i];
+        if (before->request_id == request_id && before->answered == type && request_id != 0) {
+            d->commands_repeated++;
+            answer(d, before);
+            return true;
+        }
+    }
+    return false;
 }
 
 static void refuse_for(device *d, uint16_t request_id, uint8_t type, uint8_t reason, const char *text)
@@ -77,10 +90,11 @@ static void take_hello(device *d, const message_hello *hello, const frame *heade
         refuse(d, hello->request_id, MESSAGE_HELLO, &why);
         return;
     }
-    if (header->session != d->link.session) { /* a HELLO sent again opens nothing again */
+    if (header->session != d->link.session) { /* a HELLO that is repeated opens nothing again */
         d->link.session = header->session;
         pose_input_open(&d->poses, header->session);
         memset(d->answers, 0, sizeof d->answers);
+        params_unstage(&d->params); /* what another tool began and did not finish */
     }
     telemetry_hello(d, hello->request_id);
 }
@@ -286,27 +300,16 @@ static void take_save(device *d, uint16_t request_id)
 
 /* --- all of them ----------------------------------------------------------------------------------- */
 
-static bool repeated(device *d, uint16_t request_id, uint8_t type)
-{
-    const device_answer *before = answered_before(d, request_id, type);
-    if (before == NULL) {
-        return false;
-    }
-    d->commands_repeated++;
-    message m = {.type = MESSAGE_ACK, .ack = {request_id, type}};
-    if (before->reason != 0) {
-        m = (message){.type = MESSAGE_NACK, .nack = {.request_id = request_id, .answered = type, .reason = before->reason, .entry = -1}};
-        copy_text(m.nack.text, sizeof m.nack.text, message_value_meaning(&message_values_reasons, before->reason));
-    }
-    (void)link_send(&d->link, &m, d->now_us);
-    return true;
-}
-
-/* Whether the message comes from the session of the last HELLO; ESTOP is obeyed from anyone. */
+/* Whether the message comes from the session of the last HELLO. Whoever wants it to stop is obeyed, from
+ * anywhere; strange poses are pose_input's to count. */
 static bool in_session(const device *d, const message *m, const frame *header)
 {
-    return header->session == d->link.session || m->type == MESSAGE_HELLO || m->type == MESSAGE_ESTOP ||
-           m->type == MESSAGE_POSE || m->type == MESSAGE_PING; /* pose_input counts strangers itself */
+    static const uint8_t FROM_ANYWHERE[] = {MESSAGE_HELLO, MESSAGE_PING, MESSAGE_POSE,
+                                            MESSAGE_DISARM, MESSAGE_ESTOP};
+    if (d->link.session != 0 && header->session == d->link.session) {
+        return true;
+    }
+    return memchr(FROM_ANYWHERE, m->type, sizeof FROM_ANYWHERE) != NULL;
 }
 
 void commands_take(device *d, const message *m, const frame *header)

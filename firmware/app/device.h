@@ -41,12 +41,6 @@ typedef struct {
     device_watcher watcher;
 } device_config;
 
-/* The answer to a request that changes something, for when it is asked again. */
-typedef struct {
-    uint16_t request_id;
-    uint8_t type, reason; /* reason 0: ACK */
-} device_answer;
-
 enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 16 * 1024 };
 
 typedef struct {
@@ -68,7 +62,8 @@ typedef struct {
     uint8_t reboot; /* 1 + REBOOT_..., once the answer is out; 0: not asked */
     uint16_t save_request; /* the SAVE under way; 0: none */
     bool unsaved;
-    device_answer answers[DEVICE_ANSWERS_KEPT_N];
+    message_nack answers[DEVICE_ANSWERS_KEPT_N]; /* to requests that change something, for when they are
+                                                    asked again; reason 0: it was an ACK */
     int answers_next;
     uint32_t commands_done, commands_refused, commands_repeated;
 
@@ -78,6 +73,7 @@ typedef struct {
     uint32_t limited_ticks[SERVO_LIMITERS_N], deadline_misses, holds;
     uint32_t tick_max_us, tick_time_us, tick_worst_us, ticks_timed_n; /* ever; since the last heartbeat */
     uint32_t fault_seen; /* latched causes already told */
+    bool pose_log_gap;   /* a POSE_LOG has been dropped since the last one sent */
 
     uint8_t settings_bytes[DEVICE_SETTINGS_BYTES];
 } device;

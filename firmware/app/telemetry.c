@@ -78,6 +78,13 @@ static int16_t tenth_mrad(float angle_rad)
     return (int16_t)(scaled < 0.0f ? scaled - 0.5f : scaled + 0.5f);
 }
 
+/* The base has been carried on past the newest pose. */
+static bool is_predicted(const device *d)
+{
+    return d->pose.valid && d->params.in_force.device.pose_mode < 0.5f &&
+           d->pose.received_us != d->now_us;
+}
+
 static void send_angles(device *d)
 {
     rod_joint angles_rad[ROD_MAX_LINKS];
@@ -96,6 +103,7 @@ static void send_angles(device *d)
                                (acted & SERVO_AT_ACCEL ? ANGLES_LIMITED_ACCELERATION : 0) |
                                (acted & SERVO_AT_RATE ? ANGLES_LIMITED_RATE : 0) |
                                (servo_blend_done(&d->body.blend) ? 0 : ANGLES_BLENDING) |
+                               (is_predicted(d) ? ANGLES_PREDICTED : 0) |
                                (d->pose.valid ? 0 : ANGLES_NO_POSE));
     body_angles(&d->body, angles_rad);
     for (int i = 0; i < links_n; i++) {
@@ -135,8 +143,9 @@ static void send_pose_log(device *d)
                                     .quaternion_xyzw = {q.x, q.y, q.z, q.w},
                                     .params_generation = d->params.generation,
                                     .state = (uint8_t)d->supervisor.state,
-                                    .flags = d->input.restart ? POSE_LOG_RESTART : 0}};
-    (void)link_send(&d->link, &m, d->now_us);
+                                    .flags = (uint8_t)((d->input.restart ? POSE_LOG_RESTART : 0) |
+                                                       (d->pose_log_gap ? POSE_LOG_GAP : 0))}};
+    d->pose_log_gap = !link_send(&d->link, &m, d->now_us);
 }
 
 static void send_heartbeat(device *d)
@@ -205,6 +214,10 @@ void telemetry_stats(device *d, uint16_t request_id)
                   .dropped_telemetry = l->dropped[MESSAGE_DROP_TELEMETRY],
                   .dropped_nodes = l->dropped[MESSAGE_DROP_NODES],
                   .dropped_angles = l->dropped[MESSAGE_DROP_ANGLES],
+                  .answers_lost = l->answers_lost,
+                  .clock_exchanges = d->poses.clock.used,
+                  .clock_left_out = d->poses.clock.left_out,
+                  .clock_jumps = d->poses.clock.jumps,
                   .tick_max_us = d->tick_max_us}};
     (void)link_send(&d->link, &m, d->now_us);
 }

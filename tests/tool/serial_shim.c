@@ -108,6 +108,12 @@ int open(const char *path, int flags, ...)
     return next(path, flags, mode);
 }
 
+int __open_2(const char *path, int flags);
+int __open_2(const char *path, int flags)
+{
+    return open(path, flags);
+}
+
 FILE *fopen(const char *path, const char *mode)
 {
     FILE *(*next)(const char *, const char *) = dlsym(RTLD_NEXT, "fopen");

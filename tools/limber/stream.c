@@ -131,6 +131,7 @@ static int find_again(stream *st)
         return result;
     }
     st->reconnects_n++;
+    st->back_us = limber_now_us();
     if (kept_its_counters(&before, &st->before, limber_now_us() - lost_us)) {
         (void)account_session(&st->account, sent_n, &before, &st->before, unseen_n, true);
     } else {
@@ -221,7 +222,6 @@ static int play_track(stream *st)
     }
     st->play_us = limber_now_us();
     for (; more && result == SIM_OK && !st->interrupted; more = source_next(st->source, &pose)) {
-        const int reconnects_n = st->reconnects_n;
         uint64_t due_us = limber_now_us();
         if (st->options.speed > 0.0) {
             due_us = st->play_us + (uint64_t)(pose.t_s / st->options.speed * 1e6);
@@ -234,7 +234,7 @@ static int play_track(stream *st)
         if (!on) {
             break;
         }
-        if (reconnects_n != st->reconnects_n && limber_now_us() > due_us + IDLE_US) {
+        if (due_us + IDLE_US < st->back_us) {
             st->skipped_n++; /* its moment has passed while the device was away */
             continue;
         }

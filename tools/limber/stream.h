@@ -51,6 +51,7 @@ typedef struct {
     uint64_t played_n;        /* of the source */
     double played_s;          /* source's time of the last one */
     uint64_t play_us, end_us; /* our clock as the play began and ended */
+    uint64_t back_us; /* when the device was found again */
     uint64_t progress_us;
     uint32_t pings_n;
     bool pong_came;
