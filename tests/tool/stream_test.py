@@ -180,7 +180,7 @@ class Accounts(Streaming):
 class Ends(Streaming):
     def setUp(self):
         super().setUp()
-        self.track = self.write("track.txt", track(1000))
+        self.track = self.write("track.txt", track(1000, rate_hz=200))
 
     def interrupted(self, device, number, *arguments):
         process = self.start("stream", self.track, "--port", device.port, *arguments)
@@ -264,7 +264,7 @@ class Ends(Streaming):
 class Reconnects(Streaming):
     def setUp(self):
         super().setUp()
-        self.track = self.write("track.txt", track(300))
+        self.track = self.write("track.txt", track(300, rate_hz=200))
 
     def test_back_with_its_counters(self):
         device = self.fake("--close-after", "100", "--reopen-ms", "700")

@@ -100,7 +100,7 @@ int port_choose(char *name)
         sp_free_port_list(ports);
     }
     if (boards_n == 1 && strlen(found) < PORT_PATH_BYTES) {
-        snprintf(name, PORT_PATH_BYTES, "%s", found);
+        snprintf(name, PORT_PATH_BYTES, "%.*s", PORT_PATH_BYTES - 1, found);
         return SIM_OK;
     }
     if (boards_n == 0) {

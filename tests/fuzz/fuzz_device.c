@@ -1,0 +1,230 @@
+/* fuzz_device.c - whole conversations with the whole device; traps where a person could be hurt.
+ *
+ * The input is a list of actions; each is a byte that says what, a byte that says how much, and bytes:
+ *   0  so many bytes from the line, as they are
+ *   1  a message with a right checksum, in session: type, then its payload of so many bytes
+ *   2  so many ticks
+ *   3  a good pose and a tick, so many times
+ * Whatever comes: angles stay finite and in range, servos have torque only where the states say so. */
+#include <math.h>
+#include <string.h>
+
+#include "device.h"
+
+#define PROMISE(condition)                                                                         \
+    do {                                                                                           \
+        if (!(condition)) {                                                                        \
+            __builtin_trap();                                                                      \
+        }                                                                                          \
+    } while (0)
+
+int LLVMFuzzerTestOneInput(const uint8_t *input, size_t input_n);
+
+enum { FLASH_BYTES = 32 * 1024, SESSION = 9 };
+
+static struct {
+    hal hal;
+    uint32_t now_us;
+    uint8_t line[2 * FRAME_WIRE_MAX];
+    size_t line_n;
+    bool powered, rebooted;
+    float goals_rad[SERVOS_MAX];
+    uint8_t flash[HAL_FLASH_SECTORS_N][FLASH_BYTES];
+    device device;
+    uint16_t pose_seq;
+} world;
+
+static uint32_t now_us(void *context)
+{
+    (void)context;
+    return world.now_us;
+}
+
+static size_t line_read(void *context, uint8_t *bytes, size_t room)
+{
+    (void)context;
+    const size_t n = world.line_n < room ? world.line_n : room;
+    memcpy(bytes, world.line, n);
+    world.line_n -= n;
+    memmove(world.line, world.line + n, world.line_n);
+    return n;
+}
+
+static bool line_write(void *context, const uint8_t *bytes, size_t bytes_n)
+{
+    (void)context, (void)bytes;
+    PROMISE(bytes_n > 0 && bytes_n <= FRAME_WIRE_MAX);
+    return true;
+}
+
+static size_t line_free(void *context)
+{
+    (void)context;
+    return 8192;
+}
+
+static uint32_t none(void *context)
+{
+    (void)context;
+    return 0;
+}
+
+static void servo_power(void *context, bool on)
+{
+    (void)context;
+    world.powered = on;
+}
+
+static void servo_write(void *context, const float *goals_rad, int servos_n)
+{
+    (void)context;
+    for (int i = 0; i < servos_n; i++) {
+        PROMISE(fabsf(goals_rad[i]) <= SERVO_REACH_RAD);
+        world.goals_rad[i] = goals_rad[i];
+    }
+}
+
+static bool servo_read(void *context, float *positions_rad, int servos_n)
+{
+    (void)context;
+    memcpy(positions_rad, world.goals_rad, (size_t)servos_n * sizeof *positions_rad);
+    return true;
+}
+
+static bool yes(void *context)
+{
+    (void)context;
+    return true;
+}
+
+static bool no(void *context)
+{
+    (void)context;
+    return false;
+}
+
+static uint32_t sector_size(void *context)
+{
+    (void)context;
+    return FLASH_BYTES;
+}
+
+static void flash_read(void *context, int sector, uint32_t offset, void *bytes, size_t bytes_n)
+{
+    (void)context;
+    PROMISE(offset + bytes_n <= FLASH_BYTES);
+    memcpy(bytes, world.flash[sector] + offset, bytes_n);
+}
+
+static bool flash_write(void *context, int sector, uint32_t offset, const void *bytes, size_t bytes_n)
+{
+    (void)context;
+    PROMISE(offset % 4 == 0 && bytes_n % 4 == 0 && offset + bytes_n <= FLASH_BYTES);
+    PROMISE(!world.powered);
+    for (size_t i = 0; i < bytes_n; i++) {
+        world.flash[sector][offset + i] &= ((const uint8_t *)bytes)[i];
+    }
+    return true;
+}
+
+static bool flash_erase(void *context, int sector)
+{
+    (void)context;
+    PROMISE(!world.powered);
+    memset(world.flash[sector], 0xFF, FLASH_BYTES);
+    return true;
+}
+
+static void nothing(void *context)
+{
+    (void)context;
+}
+
+static void reboot(void *context)
+{
+    (void)context;
+    PROMISE(!world.powered);
+    world.rebooted = true;
+}
+
+static void start(void)
+{
+    static const device_config CONFIG = {.tick_s = 1e-3f, .tick_max_hz = 1000.0f, .name = "fuzz", .build = "", .links_n = 5};
+    static const hal_boot BOOT = {.clock_kind = CLOCK_HOST};
+    world.rebooted = world.powered = false;
+    device_init(&world.device, &world.hal, &CONFIG, &BOOT);
+}
+
+static void say(uint8_t type, uint16_t seq, const uint8_t *payload, size_t payload_n)
+{
+    const frame f = {type, SESSION, seq, world.now_us, payload, payload_n};
+    if (world.line_n + FRAME_WIRE_BYTES(payload_n) <= sizeof world.line) {
+        world.line_n += frame_encode(&f, world.line + world.line_n, sizeof world.line - world.line_n);
+    }
+}
+
+static void tick(void)
+{
+    device_tick(&world.device);
+    world.now_us += 1000;
+    const device *d = &world.device;
+    const supervisor_state state = d->supervisor.state;
+    PROMISE(world.powered == supervisor_duties[state].servo_power);
+    PROMISE(!world.powered || (state >= SUPERVISOR_ARMING && state <= SUPERVISOR_RELAX));
+    const rod_joint *angles = rod_angles(&d->body.rod);
+    for (int i = 0; i < d->params.in_force.rod.links_n; i++) {
+        PROMISE(fabsf(angles[i][0]) < 1.6f && fabsf(angles[i][1]) < 1.6f);
+    }
+    if (world.rebooted) {
+        start();
+    }
+}
+
+static void good_pose(void)
+{
+    const message m = {.type = MESSAGE_POSE, .pose = {.quaternion_xyzw = {0.0f, 0.0f, 0.0f, 1.0f}}};
+    uint8_t payload[64];
+    const int n = messages_pack(&m, payload, sizeof payload);
+    say(MESSAGE_POSE, ++world.pose_seq, payload, (size_t)n);
+    tick();
+}
+
+static void say_hello(void)
+{
+    const message m = {.type = MESSAGE_HELLO, .hello = {.request_id = 1, .protocol_major = PROTOCOL_MAJOR}};
+    uint8_t payload[128];
+    const int n = messages_pack(&m, payload, sizeof payload);
+    say(MESSAGE_HELLO, 0, payload, (size_t)n);
+    tick();
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *input, size_t input_n)
+{
+    memset(&world, 0, sizeof world);
+    memset(world.flash, 0xFF, sizeof world.flash);
+    world.hal = (hal){NULL, now_us, line_read, line_write, line_free, none, none, servo_power, servo_write, servo_read, yes,
+                      no, sector_size, flash_read, flash_write, flash_erase, nothing, reboot};
+    start();
+    say_hello();
+    for (size_t at = 0; at + 2 <= input_n;) {
+        const uint8_t what = input[at] % 4;
+        size_t n = input[at + 1];
+        at += 2;
+        if (what >= 2) {
+            for (size_t i = 0; i < n; i++) {
+                what == 2 ? tick() : good_pose();
+            }
+            continue;
+        }
+        n = n < input_n - at ? n : input_n - at;
+        if (what == 0 && world.line_n + n <= sizeof world.line) {
+            memcpy(world.line + world.line_n, input + at, n);
+            world.line_n += n;
+        } else if (what == 1 && n > 0) {
+            say(input[at], input[at], input + at + 1, n - 1);
+        }
+        at += n;
+        tick();
+    }
+    return 0;
+}
