@@ -134,6 +134,7 @@ class Refusals(SimCase):
             nobody = {"user": 65534, "group": 65534, "extra_groups": []}
         else:
             self.skipTest("root reads everything, and nobody cannot run the program")
+        nobody["env"] = {**os.environ, "GCOV_ERROR_FILE": os.devnull}  # a coverage build's counts stay root's
         self.track.chmod(0)
         self.refused(["replay", "track.txt"], "track.txt: Permission denied", **nobody)
         self.track.chmod(0o644)

@@ -124,7 +124,7 @@ static void tick(void)
     listen_to_it();
 }
 
-static void ticks(int n)
+__attribute__((unused)) static void ticks(int n)
 {
     for (int i = 0; i < n; i++) {
         tick();
@@ -132,7 +132,7 @@ static void ticks(int n)
 }
 
 /* A hand that sways: one pose every period_ticks. */
-static void sway(int n, int period_ticks, float amplitude_m)
+__attribute__((unused)) static void sway(int n, int period_ticks, float amplitude_m)
 {
     for (int i = 0; i < n; i++) {
         if (i % period_ticks == 0) {

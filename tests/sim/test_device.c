@@ -1,5 +1,10 @@
-/* test_device.c - the whole device on its virtual clock: what a person who holds it relies on. */
+/* test_device.c - the whole device on its virtual clock: what a person who holds it relies on.
+ *
+ *     test_device [LOSSES]     injected losses and e-stops, 500 by default
+ */
 #include "device_fixture.h"
+
+static int losses_n = 500;
 
 void setUp(void)
 {
@@ -78,7 +83,7 @@ static void test_losses_hold_within_51_ms_and_recover(void)
 {
     get_active();
     uint32_t random = 1;
-    for (int loss = 0; loss < 2000; loss++) {
+    for (int loss = 0; loss < losses_n; loss++) {
         random = random * 1664525u + 1013904223u;
         const int silence_ms = 60 + (int)(random >> 24);
         int held_after_ms = -1;
@@ -115,7 +120,7 @@ static void test_silence_ends_limp_and_needs_a_fresh_arm(void)
 static void test_estop_takes_the_torque_within_one_tick(void)
 {
     get_active();
-    for (int i = 0; i < 500; i++) {
+    for (int i = 0; i < losses_n; i++) {
         TEST_ASSERT_TRUE(b->host.plant.powered);
         ask_simply(MESSAGE_ESTOP);
         tick();
@@ -194,8 +199,9 @@ static void test_presets_change_without_a_jump(void)
     TEST_ASSERT_EQUAL_UINT32(100, b->host.device.params.generation);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    losses_n = argc > 1 ? atoi(argv[1]) : losses_n;
     UNITY_BEGIN();
     RUN_TEST(test_comes_up_disarmed_and_says_who_it_is);
     RUN_TEST(test_another_major_version_is_refused);

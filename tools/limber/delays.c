@@ -15,8 +15,9 @@ pose_delays *pose_delays_new(void)
     return d;
 }
 
-void pose_delays_session(pose_delays *d)
+void pose_delays_session(pose_delays *d, float tick_hz)
 {
+    d->tick_us = tick_hz >= 1.0f ? (int32_t)(1e6f / tick_hz + 0.5f) : 0;
     d->sent_n = d->first_echo_n = d->last_echo_n = 0;
     d->echoed = false;
 }
@@ -66,8 +67,10 @@ void pose_delays_angles(pose_delays *d, const message_angles *angles, uint32_t d
     line_us = line_us < 0 ? 0 : line_us > most_reply_us ? most_reply_us : line_us;
     add(&d->whole, whole_us);
     add(&d->line, line_us);
-    add(&d->solve, angles->received_ago_us - angles->solved_ago_us);
-    add(&d->reply, most_reply_us - line_us + angles->solved_ago_us);
+    int32_t solve_us = angles->received_ago_us - angles->solved_ago_us; /* of the last tick ... */
+    solve_us = d->tick_us > 0 ? solve_us % d->tick_us : solve_us;       /* ... of the first */
+    add(&d->solve, solve_us);
+    add(&d->reply, whole_us - line_us - solve_us);
 }
 
 uint64_t pose_delays_unseen(const pose_delays *d)

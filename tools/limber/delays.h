@@ -5,8 +5,9 @@
  * ANGLES echoes the seq of the newest pose in it and how long ago, on the device's clock, that was received
  * and the solving ended; the clock's offset (clock_sync.h) ties the two ends together. line + solve + reply
  * is the whole, exactly; an error of the offset moves time between line and reply only. Each pose counts
- * once, with the first ANGLES that it is in. `solve` includes waiting for the tick, `reply` for the turn of
- * ANGLES, which come at a rate of their own.
+ * once, with the first ANGLES that it is in. A pose goes into the next tick: `solve` is the time to the end of
+ * that one, at most a tick and the solving; the ticks after it, until it is the turn of ANGLES, which come at a
+ * rate of their own, count to `reply`.
  */
 #ifndef LIMBER_DELAYS_H
 #define LIMBER_DELAYS_H
@@ -33,14 +34,15 @@ typedef struct {
     uint64_t sent_n;         /* in this session */
     uint16_t last_seq, last_echo;
     bool echoed;
+    int32_t tick_us; /* 0: unknown */
     uint64_t first_echo_n, last_echo_n; /* of the session's poses, from 1 */
 } pose_delays;
 
 /* All zeros, from malloc (4 MB); NULL after complaining. */
 pose_delays *pose_delays_new(void);
 
-/* Seqs begin anew. */
-void pose_delays_session(pose_delays *d);
+/* Seqs begin anew, at a device that ticks so fast. */
+void pose_delays_session(pose_delays *d, float tick_hz);
 
 void pose_delays_sent(pose_delays *d, uint16_t seq, uint64_t sent_us);
 void pose_delays_angles(pose_delays *d, const message_angles *angles, uint32_t device_us,

@@ -55,6 +55,7 @@ static int measure(session *s, pose_delays *d, double seconds, double rate_hz)
                                    .quality = UINT8_MAX,
                                    .source = SOURCE_SYNTHETIC}};
     const long poses_n = (long)(seconds * rate_hz);
+    pose_delays_session(d, s->device.tick_hz);
     s->listener = listen;
     s->context = &l;
     interrupt_catch();

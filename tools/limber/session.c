@@ -32,9 +32,14 @@ uint16_t session_next_seq(const session *s, message_type type)
 
 bool session_send(session *s, const message *m)
 {
+    return session_send_at(s, m, limber_now_us());
+}
+
+bool session_send_at(session *s, const message *m, uint64_t at_us)
+{
     uint8_t wire[FRAME_WIRE_MAX];
     const size_t n =
-        messages_encode(m, s->id, s->seq[m->type], (uint32_t)limber_now_us(), wire, sizeof wire);
+        messages_encode(m, s->id, s->seq[m->type], (uint32_t)at_us, wire, sizeof wire);
     s->seq[m->type]++;
     if (s->lost || !port_write(&s->port, wire, n, s->why)) {
         lose(s);

@@ -70,9 +70,12 @@ int session_start(session *s, const char *name, float pose_hz);
 
 void session_close(session *s);
 
-/* Sends a message as it is. False if the port is gone: the session is lost then. */
+/* Sends a message as it is. False if the port is gone: the session is lost then. `at` also says what the
+ * header's clock is to read: what counts from there must not count from a moment later. */
 bool session_send(session *s, const message *m);
-/* The seq and clock that the next message of this type will carry must be known to whoever sends POSEs. */
+bool session_send_at(session *s, const message *m, uint64_t at_us);
+
+/* The seq that the next message of this type will carry. */
 uint16_t session_next_seq(const session *s, message_type type);
 
 /* Takes what comes until the moment until_us (of limber_now_us), but returns as soon as something has come

@@ -67,7 +67,7 @@ void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us)
                  .quality = UINT8_MAX,
                  .source = st->source->options.live ? SOURCE_UNKNOWN : SOURCE_RECORDED}};
     pose_delays_sent(st->delays, session_next_seq(&st->s, MESSAGE_POSE), now_us);
-    (void)session_send(&st->s, &m);
+    (void)session_send_at(&st->s, &m, now_us);
     st->session_sent_n++;
 }
 
@@ -85,7 +85,7 @@ static int begin_session(stream *st)
 {
     st->in_session = true;
     st->session_sent_n = 0;
-    pose_delays_session(st->delays);
+    pose_delays_session(st->delays, st->s.device.tick_hz);
     st->s.listener = listen;
     st->s.context = st;
     snprintf(st->device, sizeof st->device, "%s %s", st->s.device.device, st->s.device.build);
