@@ -221,7 +221,9 @@ void device_tick(device *d)
 {
     const uint32_t last_us = d->now_us;
     d->now_us = d->hal->now_us(d->hal->context);
-    d->uptime_us += d->now_us - last_us;
+    d->uptime_rest_us += d->now_us - last_us;
+    d->uptime_ms += d->uptime_rest_us / 1000u;
+    d->uptime_rest_us %= 1000u;
     d->input = (body_input){.follow = d->input.follow};
 
     receive(d);

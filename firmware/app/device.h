@@ -56,7 +56,7 @@ typedef struct {
     body_input input; /* of this tick */
 
     uint32_t now_us, tick;
-    uint64_t uptime_us;
+    uint32_t uptime_ms, uptime_rest_us;
     bool arm, disarm, clear, estop; /* asked for in this tick */
     bool self_test_passed;
     uint8_t reboot; /* 1 + REBOOT_..., once the answer is out; 0: not asked */

@@ -162,7 +162,7 @@ static void send_heartbeat(device *d)
                                          (d->unsaved ? HEARTBEAT_UNSAVED : 0) |
                                          (stream.state == POSE_STREAM_GOOD ? HEARTBEAT_POSES_GOOD : 0) |
                                          (d->poses.clock.synced ? HEARTBEAT_CLOCK_KNOWN : 0)),
-                      .uptime_ms = (uint32_t)(d->uptime_us / 1000u),
+                      .uptime_ms = d->uptime_ms,
                       .tick = d->tick,
                       .params_generation = d->params.generation,
                       .tick_mean_us = short_us(d->ticks_timed_n > 0 ? d->tick_time_us / d->ticks_timed_n : 0),
@@ -179,7 +179,7 @@ void telemetry_stats(device *d, uint16_t request_id)
     const message m = {
         .type = MESSAGE_STATS,
         .stats = {.request_id = request_id,
-                  .uptime_ms = (uint32_t)(d->uptime_us / 1000u),
+                  .uptime_ms = d->uptime_ms,
                   .frames_good = f->good,
                   .frames_crc = f->crc,
                   .frames_cobs = f->cobs,

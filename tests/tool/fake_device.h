@@ -46,6 +46,9 @@ void fake_send(fake_device *d, const message *m);
 /* A line on stdout for the test. */
 void fake_tell(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Until the process is killed; ways and state are set. */
+void fake_run(fake_device *d);
+
 /* fake_requests.c: everything with a request id but HELLO. */
 void fake_requests_init(fake_device *d);
 void fake_request(fake_device *d, const message *m);

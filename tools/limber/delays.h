@@ -34,7 +34,7 @@ typedef struct {
     uint64_t sent_n;         /* in this session */
     uint16_t last_seq, last_echo;
     bool echoed;
-    int32_t tick_us; /* 0: unknown */
+    int32_t tick_us;                    /* 0: unknown */
     uint64_t first_echo_n, last_echo_n; /* of the session's poses, from 1 */
 } pose_delays;
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "link_options.h"
-#include "param_text.h"
+#include "param_set.h"
 #include "texts.h"
 
 static const char EXAMPLES[] =
@@ -129,80 +129,7 @@ static int show_many(params_command *c, poptContext context)
     return result;
 }
 
-/* --- set, load, defaults --------------------------------------------------------------------------- */
-
-/* What had been staged before something was refused must not wait for somebody else's COMMIT: the values
- * in force are staged again. */
-static void take_back(params_command *c, const message_param_set *sets, int sets_n)
-{
-    for (int i = 0; i < sets_n && !c->s.lost; i++) {
-        message ask = {.type = MESSAGE_PARAM_GET, .param_get = {.which = PARAM_IN_FORCE}};
-        memcpy(ask.param_get.name, sets[i].name, sizeof ask.param_get.name);
-        if (session_try(&c->s, &ask) == REQUEST_DONE) {
-            message set = {.type = MESSAGE_PARAM_SET};
-            const message_param_value *const value = &c->s.answer.param_value;
-            memcpy(set.param_set.name, sets[i].name, sizeof set.param_set.name);
-            set.param_set.values_n = value->values_n;
-            memcpy(set.param_set.values, value->values, sizeof value->values);
-            (void)session_try(&c->s, &set);
-        }
-    }
-}
-
-/* What the refusal was about: a place in a file, or nothing worth telling. */
-static int complain_of(params_command *c, const char *origin)
-{
-    if (c->s.request != REQUEST_REFUSED || c->s.lost || strcmp(origin, "params set") == 0) {
-        return session_complain(&c->s);
-    }
-    port_why text;
-    texts_refusal(&c->s.answer.nack, text);
-    return limber_refuse("%s: %s", origin, text);
-}
-
-static int commit(params_command *c)
-{
-    return session_request(&c->s, &(message){.type = MESSAGE_PARAM_COMMIT});
-}
-
-/* Lists come after what may change their length. */
-static bool comes_in_round(const param_table *table, const message_param_set *set, int round)
-{
-    const message_param_info *const info = param_table_find(table, set->name);
-    return ((info->flags & PARAM_LIST) != 0) == (round == 1);
-}
-
-static int stage_and_commit(params_command *c, const param_assignments *all)
-{
-    message_param_set *const sets = calloc((size_t)all->items_n + 1, sizeof *sets);
-    int result = sets == NULL ? sim_give_up("out of memory") : SIM_OK;
-    for (int i = 0; result == SIM_OK && i < all->items_n; i++) {
-        result = param_assignment_parse(&all->items[i], &c->table, &sets[i]);
-    }
-    bool staged = false;
-    for (int round = 0; round < 2 && result == SIM_OK; round++) {
-        for (int i = 0; result == SIM_OK && i < all->items_n; i++) {
-            if (comes_in_round(&c->table, &sets[i], round)) {
-                staged = true;
-                if (session_try(&c->s, &(message){.type = MESSAGE_PARAM_SET,
-                                                  .param_set = sets[i]}) != REQUEST_DONE) {
-                    result = complain_of(c, all->items[i].origin);
-                }
-            }
-        }
-    }
-    if (result == SIM_OK) {
-        result = commit(c);
-    }
-    if (result != SIM_OK && staged) {
-        take_back(c, sets, all->items_n);
-    } else if (result == SIM_OK) {
-        printf("%d parameter%s set; limber params save makes it last\n", all->items_n,
-               all->items_n == 1 ? "" : "s");
-    }
-    free(sets);
-    return result;
-}
+/* --- save and defaults ---------------------------------------------------------------------------- */
 
 static int save(params_command *c)
 {
@@ -217,7 +144,7 @@ static int defaults(params_command *c)
 {
     int result = session_request(&c->s, &(message){.type = MESSAGE_PARAM_DEFAULTS});
     if (result == SIM_OK) {
-        result = commit(c);
+        result = session_request(&c->s, &(message){.type = MESSAGE_PARAM_COMMIT});
     }
     if (result == SIM_OK) {
         printf("all parameters at their defaults; limber params save makes it last\n");
@@ -276,7 +203,7 @@ static int act(params_command *c, poptContext context)
         switch (what) {
         case SET:
         case LOAD:
-            result = stage_and_commit(c, &all);
+            result = param_set_all(&c->s, &c->table, &all);
             break;
         case SAVE:
             result = save(c);

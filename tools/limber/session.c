@@ -38,8 +38,7 @@ bool session_send(session *s, const message *m)
 bool session_send_at(session *s, const message *m, uint64_t at_us)
 {
     uint8_t wire[FRAME_WIRE_MAX];
-    const size_t n =
-        messages_encode(m, s->id, s->seq[m->type], (uint32_t)at_us, wire, sizeof wire);
+    const size_t n = messages_encode(m, s->id, s->seq[m->type], (uint32_t)at_us, wire, sizeof wire);
     s->seq[m->type]++;
     if (s->lost || !port_write(&s->port, wire, n, s->why)) {
         lose(s);

@@ -33,7 +33,8 @@ typedef struct {
     port port;
     const char *name; /* of the port, as given */
     bool open, lost;
-    port_why why; /* of being lost */
+    uint8_t refusal; /* reason of the NACK to our HELLO, 0: none came */
+    port_why why;    /* of being lost */
 
     message_hello device;
     message_boot_report boot;
@@ -65,7 +66,7 @@ typedef struct {
 /* Opens the port and says HELLO; pose_hz as in HELLO. False with s->why: nothing is open then. */
 bool session_open(session *s, const char *name, float pose_hz);
 
-/* The same, complaining. Returns SIM_OK or LIMBER_DEVICE. */
+/* The same, complaining. Returns SIM_OK, LIMBER_DEVICE or LIMBER_INTERRUPTED. */
 int session_start(session *s, const char *name, float pose_hz);
 
 void session_close(session *s);

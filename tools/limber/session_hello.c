@@ -75,6 +75,7 @@ static void take_refusal(void *context, const message *m, const frame *f, uint64
         return;
     }
     s->lost = true;
+    s->refusal = m->nack.reason;
     texts_refusal(&m->nack, s->why);
     if (m->nack.reason == REASON_VERSION) {
         const size_t used = strlen(s->why);

@@ -6,44 +6,13 @@
 #include <string.h>
 
 #include "interrupt.h"
-#include "stats_request.h"
 
 enum {
     LEAD_US_MIN = 5000,
-    RETRY_US = 250000,
-    STATS_TRIES_N = 5,
-    STATS_PAUSE_US = 20000,
     WINDOW_N = 16, /* poses on their way at most when nothing else sets the pace */
     PONG_MAX_US = 1000000,
     IDLE_US = 50000,
 };
-
-static void listen(void *context, const message *m, const frame *f, uint64_t at_us)
-{
-    stream *st = context;
-    switch (m->type) {
-    case MESSAGE_ANGLES:
-        st->state = m->angles.state;
-        st->angles_n++;
-        pose_delays_angles(st->delays, &m->angles, f->t_us, at_us, &st->s.clock);
-        angles_csv_add(st->csv, &m->angles);
-        break;
-    case MESSAGE_HEARTBEAT:
-        st->state = m->heartbeat.state;
-        break;
-    case MESSAGE_PONG:
-        st->pong_came = st->pong_came || m->pong.token == st->pings_n;
-        break;
-    case MESSAGE_FAULT:
-        limber_note("the device reports fault %s: %s%s%s",
-                    message_value_name(&message_values_faults, m->fault.fault),
-                    message_value_meaning(&message_values_faults, m->fault.fault),
-                    m->fault.text[0] == '\0' ? "" : "; ", m->fault.text);
-        break;
-    default:
-        break;
-    }
-}
 
 void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us)
 {
@@ -71,86 +40,7 @@ void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us)
     st->session_sent_n++;
 }
 
-/* --- sessions -------------------------------------------------------------------------------------- */
-
-static double poses_hz(const stream *st)
-{
-    const bool paced = !st->source->options.live && st->options.speed > 0.0;
-    return !paced || !st->options.arm /* who only computes may be slow */
-               ? 0.0
-               : st->options.speed / source_interval_s(st->source);
-}
-
-static int begin_session(stream *st)
-{
-    st->in_session = true;
-    st->session_sent_n = 0;
-    pose_delays_session(st->delays, st->s.device.tick_hz);
-    st->s.listener = listen;
-    st->s.context = st;
-    snprintf(st->device, sizeof st->device, "%s %s", st->s.device.device, st->s.device.build);
-    st->links_n = st->s.device.links_n;
-    int result = session_wait_for_state(&st->s);
-    st->state = st->s.heartbeat.state;
-    if (result == SIM_OK) {
-        result = stats_request(&st->s, &st->before);
-    }
-    return result;
-}
-
-/* Its counters went on if it has been up for as long as it must have been. */
-static bool kept_its_counters(const message_stats *before, const message_stats *after,
-                              uint64_t apart_us)
-{
-    const uint32_t up_ms = after->uptime_ms - before->uptime_ms;
-    return up_ms + 1000 >= apart_us / 1000 && up_ms <= apart_us / 1000 + 60000;
-}
-
-/* The device is lost: ask again and again, as long as nobody says stop. SIM_OK with a new session. */
-static int find_again(stream *st)
-{
-    const uint64_t lost_us = limber_now_us();
-    const message_stats before = st->before;
-    const uint64_t sent_n = st->session_sent_n, unseen_n = pose_delays_unseen(st->delays);
-    const bool armed = st->arming != ARMING_OFF;
-    session_close(&st->s);
-    st->in_session = false;
-    while (!session_open(&st->s, st->options.port, (float)poses_hz(st))) {
-        if (interrupt_came()) {
-            account_unknown(&st->account, sent_n);
-            return SIM_OK;
-        }
-        for (uint64_t now_us = limber_now_us(), until_us = now_us + RETRY_US;
-             now_us < until_us && !interrupt_came(); now_us = limber_now_us()) {
-            (void)port_wait(&(port){.fd = -1}, -1, (int64_t)(until_us - now_us));
-        }
-    }
-    const int result = begin_session(st);
-    if (result != SIM_OK) {
-        account_unknown(&st->account, sent_n);
-        return result;
-    }
-    st->reconnects_n++;
-    st->back_us = limber_now_us();
-    if (kept_its_counters(&before, &st->before, limber_now_us() - lost_us)) {
-        (void)account_session(&st->account, sent_n, &before, &st->before, unseen_n, true);
-    } else {
-        account_unknown(&st->account, sent_n);
-    }
-    limber_note("the device is back after %.1f s, state %s%s",
-                (double)(limber_now_us() - lost_us) * 1e-6,
-                message_value_name(&message_values_device_states, st->state),
-                !armed || st->state == DEVICE_ACTIVE || st->state == DEVICE_HOLD ? ""
-                : st->options.rearm ? "; it will be armed again"
-                                    : "; it stays without torque (--rearm would arm it again)");
-    if (armed && st->state != DEVICE_ACTIVE && st->state != DEVICE_HOLD) {
-        st->arming = ARMING_OFF;
-        if (st->options.rearm) {
-            stream_begin_arming(st);
-        }
-    }
-    return SIM_OK;
-}
+/* --- play ------------------------------------------------------------------------------------------ */
 
 /* After every step: lost, stopped, dropped? False with *result where it is over. */
 static bool goes_on(stream *st, int *result)
@@ -161,7 +51,7 @@ static bool goes_on(stream *st, int *result)
         st->interrupted = true;
     } else if (st->s.lost && st->options.reconnect) {
         limber_note("lost the device: %s; trying again until it is back (Ctrl-C stops)", st->s.why);
-        *result = find_again(st);
+        *result = stream_find_again(st);
         st->interrupted = interrupt_came();
     } else if (st->s.lost) {
         *result = limber_refuse("lost the device: %s (--reconnect would try again)", st->s.why);
@@ -170,8 +60,6 @@ static bool goes_on(stream *st, int *result)
     }
     return *result == SIM_OK && !st->interrupted;
 }
-
-/* --- play ------------------------------------------------------------------------------------------ */
 
 /* Sends one pose over and over until the device follows: the track begins when the rod does. */
 static int lead_in(stream *st, const rod_pose *first)
@@ -272,31 +160,6 @@ static int play_live(stream *st)
 
 /* --- all of it ------------------------------------------------------------------------------------- */
 
-/* Poses may still be on their way into a tick: asked again before anything is called unaccounted for. */
-static int settle(stream *st)
-{
-    message_stats after;
-    const uint64_t unseen_n = pose_delays_unseen(st->delays);
-    for (int i = 1;; i++) {
-        const int result = stats_request(&st->s, &after);
-        if (result != SIM_OK) {
-            account_unknown(&st->account, st->session_sent_n);
-            return result;
-        }
-        const bool final = i == STATS_TRIES_N;
-        if (account_session(&st->account, st->session_sent_n, &st->before, &after, 0, false) == 0 ||
-            final) {
-            (void)account_session(&st->account, st->session_sent_n, &st->before, &after, unseen_n,
-                                  true);
-            return SIM_OK;
-        }
-        const uint64_t until_us = limber_now_us() + STATS_PAUSE_US;
-        while (limber_now_us() < until_us && !st->s.lost) {
-            (void)session_step(&st->s, until_us, -1);
-        }
-    }
-}
-
 static int finish(stream *st, int result)
 {
     st->end_us = limber_now_us();
@@ -309,7 +172,7 @@ static int finish(stream *st, int result)
         account_unknown(&st->account, st->session_sent_n);
         return result;
     }
-    const int settled = settle(st);
+    const int settled = stream_settle(st);
     return result == SIM_OK ? settled : result;
 }
 
@@ -320,17 +183,8 @@ int stream_run(stream *st, const stream_options *options, source *src, angles_cs
     if (st->delays == NULL) {
         return SIM_INTERNAL;
     }
-    int result = session_start(&st->s, options->port, (float)poses_hz(st));
-    if (result == SIM_OK) {
-        csv->tick_hz = (double)st->s.device.tick_hz > 0.0 ? (double)st->s.device.tick_hz : 1000.0;
-        result = begin_session(st);
-    }
-    if (result == SIM_OK) {
-        result = stream_check_pace(st);
-    }
+    int result = stream_open(st);
     if (result != SIM_OK) {
-        session_close(&st->s);
-        st->in_session = false;
         return result;
     }
     result = src->options.live ? play_live(st) : play_track(st);

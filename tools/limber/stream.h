@@ -51,7 +51,7 @@ typedef struct {
     uint64_t played_n;        /* of the source */
     double played_s;          /* source's time of the last one */
     uint64_t play_us, end_us; /* our clock as the play began and ended */
-    uint64_t back_us; /* when the device was found again */
+    uint64_t back_us;         /* when the device was found again */
     uint64_t progress_us;
     uint32_t pings_n;
     bool pong_came;
@@ -74,6 +74,18 @@ void stream_free(stream *st);
 
 /* Sends a pose captured at that moment of our clock. */
 void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us);
+
+/* --- stream_session.c ------------------------------------------------------------------------------- */
+
+/* Opens it, and asks for all that must be known before the first pose. SIM_OK, or an exit code after
+ * complaining; it is closed then. */
+int stream_open(stream *st);
+/* The device is lost: asks again and again, as long as nobody says stop. SIM_OK with a new session, or
+ * without one after an interrupt. */
+int stream_find_again(stream *st);
+/* Where the session's poses went. Some may still be on their way into a tick: asked again before anything is
+ * called unaccounted for. SIM_OK, or LIMBER_DEVICE after complaining. */
+int stream_settle(stream *st);
 
 /* --- stream_arming.c -------------------------------------------------------------------------------- */
 
