@@ -44,7 +44,8 @@ static void changed(void *context, const params_set *set, bool all_new)
 
 static void placed(void *context, const float *positions_rad, int servos_n)
 {
-    add(context, LOG_PLACED, (uint8_t)servos_n, positions_rad, (size_t)servos_n * sizeof *positions_rad);
+    add(context, LOG_PLACED, (uint8_t)servos_n, positions_rad,
+        (size_t)servos_n * sizeof *positions_rad);
 }
 
 static uint64_t add_angles(uint64_t hash, const body *b, rod_joint *angles_rad)
@@ -89,7 +90,8 @@ int body_log_close(body_log *log, const char *path)
     }
     const bool whole = !ferror(log->file);
     const bool closed = fclose(log->file) == 0;
-    return whole && closed ? SIM_OK : sim_complain("%s: the log is not whole: %s", path, strerror(errno));
+    return whole && closed ? SIM_OK
+                           : sim_complain("%s: the log is not whole: %s", path, strerror(errno));
 }
 
 /* --- replay ------------------------------------------------------------------------------------- */
@@ -135,7 +137,8 @@ static void take_tick(rerun *r, const body_input *input)
         const double rate_hz = round(1.0 / (double)r->set.rod.tick_s);
         fprintf(r->angles.file, "%.9g", (double)r->ticks_n / rate_hz);
         for (int i = 0; i < r->set.rod.links_n; i++) {
-            fprintf(r->angles.file, ",%.9g,%.9g", (double)angles_rad[i][0], (double)angles_rad[i][1]);
+            fprintf(r->angles.file, ",%.9g,%.9g", (double)angles_rad[i][0],
+                    (double)angles_rad[i][1]);
         }
         fprintf(r->angles.file, "\n");
     }

@@ -28,7 +28,8 @@ static const char EXAMPLES[] =
     "  limber stream --port pty:build/rod build/tracks/star.txt # another\n"
     "  limber-sim device --tcp 127.0.0.1:5555 --flash build/flash.bin --log build/body.log\n"
     "  limber-sim device --pty build/rod --inject noise@2+1:0.001 --inject servo@5+0.1\n\n"
-    "Ends with Ctrl-C, and then prints the hash of all angles; limber-sim replay --per-tick LOG comes to "
+    "Ends with Ctrl-C, and then prints the hash of all angles; limber-sim replay --per-tick LOG "
+    "comes to "
     "the same.\n";
 
 typedef struct {
@@ -112,7 +113,8 @@ static int take_options(poptContext context, choices *c, injection *faults, bool
         }
     }
     if (poptPeekArg(context) != NULL) {
-        return sim_complain("device: unexpected '%s'; try limber-sim device --help", poptPeekArg(context));
+        return sim_complain("device: unexpected '%s'; try limber-sim device --help",
+                            poptPeekArg(context));
     }
     return (c->pty == NULL) == (c->tcp == NULL)
                ? sim_complain("device: give either --pty LINK or --tcp ADDRESS:PORT")
@@ -127,7 +129,8 @@ static int open_all(host_device *h, const choices *c)
         result = body_log_open(&h->log, c->log);
     }
     if (result == SIM_OK) {
-        result = c->pty != NULL ? line_open_pty(&h->line, c->pty) : line_open_tcp(&h->line, c->tcp, &port);
+        result = c->pty != NULL ? line_open_pty(&h->line, c->pty)
+                                : line_open_tcp(&h->line, c->tcp, &port);
     }
     if (result == SIM_OK && c->pty != NULL) {
         printf("limber-sim device: limber ... --port pty:%s\n", c->pty);
@@ -185,15 +188,22 @@ static int run_device(const choices *c, const injection *faults)
 int sim_device_command(int argc, const char **argv)
 {
     const struct poptOption table[] = {
-        {"pty", 0, POPT_ARG_STRING, NULL, OPTION_PTY, "be found as a serial port under this name", "LINK"},
-        {"tcp", 0, POPT_ARG_STRING, NULL, OPTION_TCP, "listen there for one tool at a time", "ADDRESS:PORT"},
-        {"speed", 0, POPT_ARG_STRING, NULL, OPTION_SPEED, "real time, or as fast as it goes (real)", "real|max"},
-        {"log", 0, POPT_ARG_STRING, NULL, OPTION_LOG, "keep the exact pose of every tick, and all else that bends the rod", "FILE"},
+        {"pty", 0, POPT_ARG_STRING, NULL, OPTION_PTY, "be found as a serial port under this name",
+         "LINK"},
+        {"tcp", 0, POPT_ARG_STRING, NULL, OPTION_TCP, "listen there for one tool at a time",
+         "ADDRESS:PORT"},
+        {"speed", 0, POPT_ARG_STRING, NULL, OPTION_SPEED, "real time, or as fast as it goes (real)",
+         "real|max"},
+        {"log", 0, POPT_ARG_STRING, NULL, OPTION_LOG,
+         "keep the exact pose of every tick, and all else that bends the rod", "FILE"},
         {"flash", 0, POPT_ARG_STRING, NULL, OPTION_FLASH, "keep settings in this file", "FILE"},
         {"links", 0, POPT_ARG_STRING, NULL, OPTION_LINKS, "links of the rod (4)", "N"},
         {"rate", 'r', POPT_ARG_STRING, NULL, OPTION_RATE, "ticks a second (1000)", "HZ"},
-        {"inject", 0, POPT_ARG_STRING, NULL, OPTION_INJECT, "let something go wrong: noise, drop, stall, servo, estop, cut, clock", "KIND@START[+SECONDS][:AMOUNT]"},
-        {"seconds", 0, POPT_ARG_STRING, NULL, OPTION_SECONDS, "end after so long on the device's clock", "S"},
+        {"inject", 0, POPT_ARG_STRING, NULL, OPTION_INJECT,
+         "let something go wrong: noise, drop, stall, servo, estop, cut, clock",
+         "KIND@START[+SECONDS][:AMOUNT]"},
+        {"seconds", 0, POPT_ARG_STRING, NULL, OPTION_SECONDS,
+         "end after so long on the device's clock", "S"},
         OPTIONS_END,
     };
     choices c = {.links_n = 4, .rate_hz = 1000.0};

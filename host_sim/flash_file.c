@@ -15,13 +15,15 @@ int flash_file_open(flash_file *flash, const char *path)
     flash->writes_left = -1;
     FILE *file = path != NULL ? fopen(path, "rb") : NULL;
     if (file == NULL) {
-        return path == NULL || errno == ENOENT ? SIM_OK : sim_complain("%s: %s", path, strerror(errno));
+        return path == NULL || errno == ENOENT ? SIM_OK
+                                               : sim_complain("%s: %s", path, strerror(errno));
     }
     const size_t n = fread(flash->bytes, 1, sizeof flash->bytes, file);
     const bool too_long = getc(file) != EOF;
     fclose(file);
     if (n != sizeof flash->bytes || too_long) {
-        return sim_complain("%s: not a flash file: it must be %zu bytes long", path, sizeof flash->bytes);
+        return sim_complain("%s: not a flash file: it must be %zu bytes long", path,
+                            sizeof flash->bytes);
     }
     return SIM_OK;
 }
@@ -48,7 +50,8 @@ static bool keep(const flash_file *flash, int sector, uint32_t offset, size_t by
     return fclose(file) == 0 && good;
 }
 
-bool flash_file_write(flash_file *flash, int sector, uint32_t offset, const void *bytes, size_t bytes_n)
+bool flash_file_write(flash_file *flash, int sector, uint32_t offset, const void *bytes,
+                      size_t bytes_n)
 {
     const uint8_t *from = bytes;
     for (size_t i = 0; i < bytes_n; i++) {

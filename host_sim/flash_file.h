@@ -18,7 +18,8 @@ typedef struct {
 /* Reads the file, or starts erased where there is none. Returns SIM_OK, or complains. */
 int flash_file_open(flash_file *flash, const char *path);
 
-bool flash_file_write(flash_file *flash, int sector, uint32_t offset, const void *bytes, size_t bytes_n);
+bool flash_file_write(flash_file *flash, int sector, uint32_t offset, const void *bytes,
+                      size_t bytes_n);
 bool flash_file_erase(flash_file *flash, int sector);
 
 #endif

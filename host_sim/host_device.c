@@ -83,7 +83,8 @@ static void flash_read(void *context, int sector, uint32_t offset, void *bytes, 
     memcpy(bytes, h->flash.bytes[sector] + offset, bytes_n);
 }
 
-static bool flash_write(void *context, int sector, uint32_t offset, const void *bytes, size_t bytes_n)
+static bool flash_write(void *context, int sector, uint32_t offset, const void *bytes,
+                        size_t bytes_n)
 {
     host_device *h = context;
     return flash_file_write(&h->flash, sector, offset, bytes, bytes_n);

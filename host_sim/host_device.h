@@ -20,8 +20,8 @@ typedef struct {
     device device;
     device_config config;
     hal_boot boot;
-    double elapsed_s;    /* of the device's own clock, jumps left out */
-    uint32_t jumped_us;  /* by which injected clock jumps are ahead */
+    double elapsed_s;   /* of the device's own clock, jumps left out */
+    uint32_t jumped_us; /* by which injected clock jumps are ahead */
     bool rebooting;
 } host_device;
 

@@ -15,7 +15,8 @@ int injection_add(injection *all, const char *text)
     char name[16];
     int at = 0, used = 0;
     if (sscanf(text, "%15[a-z]@%lf%n", name, &fault.start_s, &at) < 2) {
-        return sim_complain("--inject %.60s: must be KIND@START[+DURATION][:AMOUNT], as noise@2+1:0.001", text);
+        return sim_complain(
+            "--inject %.60s: must be KIND@START[+DURATION][:AMOUNT], as noise@2+1:0.001", text);
     }
     if (text[at] == '+' && sscanf(text + at, "+%lf%n", &fault.duration_s, &used) == 1) {
         at += used;
@@ -28,9 +29,10 @@ int injection_add(injection *all, const char *text)
         kind++;
     }
     if (text[at] != '\0' || kind == INJECT_KINDS_N || all->faults_n == INJECTIONS_MAX) {
-        return sim_complain("--inject %.60s: kinds are noise, drop, stall, servo, estop, cut and clock; at "
-                            "most %d faults",
-                            text, INJECTIONS_MAX);
+        return sim_complain(
+            "--inject %.60s: kinds are noise, drop, stall, servo, estop, cut and clock; at "
+            "most %d faults",
+            text, INJECTIONS_MAX);
     }
     fault.kind = (inject_kind)kind;
     all->faults[all->faults_n++] = fault;
@@ -41,7 +43,8 @@ injected_fault *injection_now(injection *all, inject_kind kind, double now_s)
 {
     for (int i = 0; i < all->faults_n; i++) {
         injected_fault *fault = &all->faults[i];
-        if (fault->kind == kind && now_s >= fault->start_s && now_s < fault->start_s + fault->duration_s) {
+        if (fault->kind == kind && now_s >= fault->start_s &&
+            now_s < fault->start_s + fault->duration_s) {
             return fault;
         }
     }

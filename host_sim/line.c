@@ -24,7 +24,8 @@ int line_open_pty(line *l, const char *link)
     *l = NOBODY;
     struct stat status;
     if (lstat(link, &status) == 0 && !S_ISLNK(status.st_mode)) {
-        return sim_complain("--pty %s: there is a file of that name; name one that may be made", link);
+        return sim_complain("--pty %s: there is a file of that name; name one that may be made",
+                            link);
     }
     l->fd = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
     if (l->fd < 0 || grantpt(l->fd) != 0 || unlockpt(l->fd) != 0) {
@@ -61,7 +62,8 @@ int line_open_tcp(line *l, const char *address, int *port)
     l->listen_fd = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
     setsockopt(l->listen_fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     socklen_t length = sizeof to;
-    if (bind(l->listen_fd, (struct sockaddr *)&to, sizeof to) != 0 || listen(l->listen_fd, 1) != 0 ||
+    if (bind(l->listen_fd, (struct sockaddr *)&to, sizeof to) != 0 ||
+        listen(l->listen_fd, 1) != 0 ||
         getsockname(l->listen_fd, (struct sockaddr *)&to, &length) != 0) {
         return sim_complain("--tcp %s: %s", address, strerror(errno));
     }

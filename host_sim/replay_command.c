@@ -272,7 +272,8 @@ int sim_replay_command(int argc, const char **argv)
         {"capsule", 0, POPT_ARG_STRING, NULL, OPTION_CAPSULE,
          "write parameters and the float32 pose of every tick", "OUT"},
         {"per-tick", 0, POPT_ARG_STRING, NULL, OPTION_PER_TICK,
-         "instead of a track: the log of limber-sim device, tick by tick, with its limits and blends",
+         "instead of a track: the log of limber-sim device, tick by tick, with its limits and "
+         "blends",
          "LOG"},
         {"expect-hash", 'e', POPT_ARG_STRING, NULL, OPTION_EXPECT_HASH,
          "exit 1 unless the angles have this hash", "HASH"},

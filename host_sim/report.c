@@ -207,6 +207,7 @@ static void write_page(const char *json, FILE *file)
         {"@DATA@", NULL, NULL},
     };
     const char *c = report_page_html;
+    // cppcheck-suppress comparePointers ; the assembler puts one behind the other
     while (c < report_page_html_end) {
         size_t i = 0;
         while (i < 4 && strncmp(c, parts[i].marker, strlen(parts[i].marker)) != 0) {

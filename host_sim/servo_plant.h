@@ -9,8 +9,8 @@
 enum { PLANT_DELAY_MAX_TICKS = 32 };
 
 typedef struct {
-    int delay_ticks;      /* from a goal to its servo's hearing of it, below PLANT_DELAY_MAX_TICKS */
-    float speed_rad_s;    /* most it can do */
+    int delay_ticks;   /* from a goal to its servo's hearing of it, below PLANT_DELAY_MAX_TICKS */
+    float speed_rad_s; /* most it can do */
     bool powered, failed; /* failed: reports an error */
     int servos_n;
     long tick;

@@ -39,7 +39,11 @@ static bool prepare_servos(body *b, const params_set *set, params_refusal *why)
     const servo_error error = servo_map_init(&b->map, configs, 2 * set->rod.links_n,
                                              (float)ticks * set->rod.tick_s, &refusal);
     if (error != SERVO_OK) {
-        *why = (params_refusal){REASON_COMBINATION, refusal.servo, refusal.value, refusal.min, refusal.max,
+        *why = (params_refusal){REASON_COMBINATION,
+                                refusal.servo,
+                                refusal.value,
+                                refusal.min,
+                                refusal.max,
                                 error == SERVO_E_ID       ? "servo_id"
                                 : error == SERVO_E_OFFSET ? "servo_offset"
                                 : error == SERVO_E_RANGE  ? "servo_min"
@@ -55,8 +59,10 @@ static bool prepare_servos(body *b, const params_set *set, params_refusal *why)
 
 static bool refuse_rod(rod_error error, const rod_refusal *refusal, params_refusal *why)
 {
-    *why = (params_refusal){REASON_COMBINATION, refusal->joint, refusal->value, refusal->min, refusal->max,
-                            refusal->field != NULL ? refusal->field->name : "", rod_error_text(error)};
+    *why = (params_refusal){
+        REASON_COMBINATION,   refusal->joint, refusal->value,
+        refusal->min,         refusal->max,   refusal->field != NULL ? refusal->field->name : "",
+        rod_error_text(error)};
     return false;
 }
 
@@ -105,7 +111,8 @@ static void serve_servos(body *b)
     float targets_rad[SERVOS_MAX];
     switch (b->follow) {
     case FOLLOW_ROD:
-        servo_map_targets(&b->map, rod_angles(&b->rod), rod_params_of(&b->rod)->links_n, targets_rad);
+        servo_map_targets(&b->map, rod_angles(&b->rod), rod_params_of(&b->rod)->links_n,
+                          targets_rad);
         break;
     case FOLLOW_STRAIGHT:
         servo_map_straight(&b->map, targets_rad);

@@ -37,9 +37,9 @@ typedef struct {
     float blend_s;
     int servo_period_ticks, ticks_to_servos;
     uint8_t follow;
-    bool goals_new;      /* the servos were served in the last tick */
-    bool finite;         /* the last rod_step was */
-    uint32_t limited;    /* SERVO_... flags of the last service */
+    bool goals_new;   /* the servos were served in the last tick */
+    bool finite;      /* the last rod_step was */
+    uint32_t limited; /* SERVO_... flags of the last service */
 } body;
 
 /* False with *why filled where the parameters do not go together; b is then not to be used. */

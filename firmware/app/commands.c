@@ -68,7 +68,8 @@ static bool repeated(device *d, uint16_t request_id, uint8_t type)
     return false;
 }
 
-static void refuse_for(device *d, uint16_t request_id, uint8_t type, uint8_t reason, const char *text)
+static void refuse_for(device *d, uint16_t request_id, uint8_t type, uint8_t reason,
+                       const char *text)
 {
     const params_refusal why = {.reason = reason, .entry = -1, .field = "", .text = text};
     refuse(d, request_id, type, &why);
@@ -85,8 +86,14 @@ static void take_hello(device *d, const message_hello *hello, const frame *heade
     const float hold_s = d->params.in_force.device.pose_hold_ms * 1e-3f;
     if (hello->pose_hz > 0.0f && hello->pose_hz * hold_s < 1.0f) {
         /* refused now, rather than held and released between any two poses */
-        const params_refusal why = {REASON_POSES_TOO_SLOW, -1, hello->pose_hz, 1.0f / hold_s, 0.0f, "pose_hz",
-                                    "slower than the pose_hold parameter allows: resample, or raise it"};
+        const params_refusal why = {
+            REASON_POSES_TOO_SLOW,
+            -1,
+            hello->pose_hz,
+            1.0f / hold_s,
+            0.0f,
+            "pose_hz",
+            "slower than the pose_hold parameter allows: resample, or raise it"};
         refuse(d, hello->request_id, MESSAGE_HELLO, &why);
         return;
     }
@@ -101,8 +108,9 @@ static void take_hello(device *d, const message_hello *hello, const frame *heade
 
 static void take_timesync(device *d, const message_timesync *sync)
 {
-    const message answer = {.type = MESSAGE_TIMESYNC_ANSWER,
-                            .timesync_answer = {sync->t1_us, d->now_us, d->hal->now_us(d->hal->context)}};
+    const message answer = {
+        .type = MESSAGE_TIMESYNC_ANSWER,
+        .timesync_answer = {sync->t1_us, d->now_us, d->hal->now_us(d->hal->context)}};
     (void)link_send(&d->link, &answer, d->now_us);
     if (sync->last_known != 0) {
         const clock_exchange exchange = {.sender_sent_us = sync->last_t1_us,
@@ -136,9 +144,14 @@ static void take_arm(device *d, uint16_t request_id)
     }
     const pose_stream stream = pose_input_stream(&d->poses);
     if (stream.state == POSE_STREAM_SLOW) {
-        const params_refusal why = {REASON_POSES_TOO_SLOW, -1, (float)stream.interval_us * 1e-3f, 0.0f,
-                                    d->params.in_force.device.pose_hold_ms, "pose_hold",
-                                    "ms between poses: more than pose_hold allows; resample, or raise it"};
+        const params_refusal why = {
+            REASON_POSES_TOO_SLOW,
+            -1,
+            (float)stream.interval_us * 1e-3f,
+            0.0f,
+            d->params.in_force.device.pose_hold_ms,
+            "pose_hold",
+            "ms between poses: more than pose_hold allows; resample, or raise it"};
         refuse(d, request_id, MESSAGE_ARM, &why);
         return;
     }
@@ -146,9 +159,10 @@ static void take_arm(device *d, uint16_t request_id)
     const char *no = supervisor_no_arm(d->supervisor.state, poses);
     if (no != NULL) {
         const bool latched = d->supervisor.state >= SUPERVISOR_FAULT;
-        const uint8_t reason = latched                                                   ? REASON_LATCHED
-                               : supervisor_no_arm(d->supervisor.state, WHEN_POSES) == NULL ? REASON_NO_POSES
-                                                                                            : REASON_STATE;
+        const uint8_t reason = latched ? REASON_LATCHED
+                               : supervisor_no_arm(d->supervisor.state, WHEN_POSES) == NULL
+                                   ? REASON_NO_POSES
+                                   : REASON_STATE;
         refuse_for(d, request_id, MESSAGE_ARM, reason, no);
         return;
     }
@@ -416,7 +430,8 @@ void commands_end_tick(device *d)
                 d->unsaved = false;
                 acknowledge(d, request_id, MESSAGE_PARAM_SAVE);
             } else {
-                refuse_for(d, request_id, MESSAGE_PARAM_SAVE, REASON_FLASH, settings_error_text(error));
+                refuse_for(d, request_id, MESSAGE_PARAM_SAVE, REASON_FLASH,
+                           settings_error_text(error));
             }
         }
     }

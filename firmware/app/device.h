@@ -31,13 +31,13 @@ typedef struct {
 } device_watcher;
 
 typedef struct {
-    float tick_s;        /* what device_tick is called with */
-    float tick_max_hz;   /* the fastest that this hardware could do, for HELLO */
-    uint32_t line_baud;  /* 0: the line has no rate */
-    uint32_t features;   /* FEATURE_... */
-    const char *name;    /* at most 16 bytes: "limber-sim" */
-    const char *build;   /* at most 24 bytes: version and commit */
-    int links_n;         /* of the rod in the hand, unless settings say otherwise */
+    float tick_s;       /* what device_tick is called with */
+    float tick_max_hz;  /* the fastest that this hardware could do, for HELLO */
+    uint32_t line_baud; /* 0: the line has no rate */
+    uint32_t features;  /* FEATURE_... */
+    const char *name;   /* at most 16 bytes: "limber-sim" */
+    const char *build;  /* at most 24 bytes: version and commit */
+    int links_n;        /* of the rod in the hand, unless settings say otherwise */
     device_watcher watcher;
 } device_config;
 
@@ -59,10 +59,11 @@ typedef struct {
     uint32_t uptime_ms, uptime_rest_us;
     bool arm, disarm, clear, estop; /* asked for in this tick */
     bool self_test_passed;
-    uint8_t reboot; /* 1 + REBOOT_..., once the answer is out; 0: not asked */
+    uint8_t reboot;        /* 1 + REBOOT_..., once the answer is out; 0: not asked */
     uint16_t save_request; /* the SAVE under way; 0: none */
     bool unsaved;
-    message_nack answers[DEVICE_ANSWERS_KEPT_N]; /* to requests that change something, for when they are
+    message_nack
+        answers[DEVICE_ANSWERS_KEPT_N]; /* to requests that change something, for when they are
                                                     asked again; reason 0: it was an ACK */
     int answers_next;
     uint32_t commands_done, commands_refused, commands_repeated;
@@ -71,7 +72,8 @@ typedef struct {
     uint32_t solved_us;
     uint32_t to_angles_ticks, to_nodes_ticks, to_heartbeat_ticks, to_stats_ticks;
     uint32_t limited_ticks[SERVO_LIMITERS_N], deadline_misses, holds;
-    uint32_t tick_max_us, tick_time_us, tick_worst_us, ticks_timed_n; /* ever; since the last heartbeat */
+    uint32_t tick_max_us, tick_time_us, tick_worst_us,
+        ticks_timed_n;   /* ever; since the last heartbeat */
     uint32_t fault_seen; /* latched causes already told */
     bool pose_log_gap;   /* a POSE_LOG has been dropped since the last one sent */
 
@@ -84,10 +86,11 @@ void device_init(device *d, const hal *hal, const device_config *config, const h
 void device_tick(device *d);
 
 /* The pieces of it, in files of their own. */
-bool device_apply_params(device *d, bool all_new, params_refusal *why); /* what is in force, to all parts */
+bool device_apply_params(device *d, bool all_new,
+                         params_refusal *why); /* what is in force, to all parts */
 void commands_take(device *d, const message *m, const frame *header); /* commands.c */
-void commands_end_tick(device *d);                                     /* a SAVE under way, a reboot due */
-void telemetry_boot(device *d, const hal_boot *boot);                  /* telemetry.c */
+void commands_end_tick(device *d);                    /* a SAVE under way, a reboot due */
+void telemetry_boot(device *d, const hal_boot *boot); /* telemetry.c */
 void telemetry_send(device *d);
 void telemetry_stats(device *d, uint16_t request_id);
 void telemetry_hello(device *d, uint16_t request_id);

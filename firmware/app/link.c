@@ -74,8 +74,7 @@ bool link_send(device_link *l, const message *m, uint32_t t_us)
 {
     uint8_t wire[FRAME_WIRE_MAX];
     const message_info *info = messages_info(m->type);
-    const size_t wire_n =
-        messages_encode(m, l->session, l->seq[m->type], t_us, wire, sizeof wire);
+    const size_t wire_n = messages_encode(m, l->session, l->seq[m->type], t_us, wire, sizeof wire);
     if (info == NULL || wire_n == 0) {
         return false;
     }
@@ -84,8 +83,7 @@ bool link_send(device_link *l, const message *m, uint32_t t_us)
     if (info->drop == MESSAGE_DROP_KEPT) {
         sent = enqueue(l, wire, wire_n);
         send_waiting(l);
-    } else if (l->queue_n == 0 &&
-               l->hal->line_free(l->hal->context) >= wire_n + keep_free) {
+    } else if (l->queue_n == 0 && l->hal->line_free(l->hal->context) >= wire_n + keep_free) {
         sent = l->hal->line_write(l->hal->context, wire, wire_n);
     }
     if (sent) {

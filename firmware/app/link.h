@@ -18,16 +18,16 @@ enum {
 };
 
 typedef struct {
-    uint32_t unknown, length;               /* good frames that are no message */
-    uint32_t dropped[MESSAGE_DROP_KEPT];    /* by class */
-    uint32_t answers_lost;                  /* the queue was full: the tool asks again */
+    uint32_t unknown, length;            /* good frames that are no message */
+    uint32_t dropped[MESSAGE_DROP_KEPT]; /* by class */
+    uint32_t answers_lost;               /* the queue was full: the tool asks again */
 } link_counts;
 
 typedef struct {
     const hal *hal;
     frame_decoder decoder;
-    uint8_t session;    /* of the last HELLO; goes into every frame sent */
-    uint16_t seq[256];  /* next of each message type */
+    uint8_t session;   /* of the last HELLO; goes into every frame sent */
+    uint16_t seq[256]; /* next of each message type */
     link_counts counts;
     uint8_t in[LINK_READ_MAX_BYTES];
     size_t in_n, in_next;

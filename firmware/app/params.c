@@ -15,46 +15,48 @@ typedef struct {
 
 static const char *const POSE_MODES[] = {"predict", "interpolate"};
 
+// clang-format off
 #define ONE(member, name, unit, what, kind, flags, min, max, initial)                              \
-    {name, unit, what, kind, PARAM_KEPT | (flags), ENTRIES_ONE,                                    \
-     min,  max,  initial, offsetof(device_params, member)}
+    {name, unit, what, kind, PARAM_KEPT | (flags), ENTRIES_ONE, min, max, initial,                 \
+     offsetof(device_params, member)}
 #define SERVO(member, name, unit, what, kind, min, max, initial)                                   \
-    {name, unit, what,                                                                             \
-     kind, PARAM_KEPT | PARAM_LIST | PARAM_DISARMED_ONLY,                                          \
-     ENTRIES_SERVOS, min, max, initial, offsetof(device_params, member)}
+    {name, unit, what, kind, PARAM_KEPT | PARAM_LIST | PARAM_DISARMED_ONLY, ENTRIES_SERVOS, min, max, initial, \
+     offsetof(device_params, member)}
+// clang-format on
 
 static const device_field DEVICE_FIELDS[] = {
     ONE(pose_mode, "pose_mode", "", "between poses: predict adds no delay, interpolate is smoother",
         PARAM_CHOICE, 0, 0.0f, 1.0f, 0.0f),
-    ONE(pose_hold_ms, "pose_hold", "ms", "without a pose for so long the rod is held", PARAM_NUMBER, 0,
-        20.0f, 200.0f, 50.0f),
+    ONE(pose_hold_ms, "pose_hold", "ms", "without a pose for so long the rod is held", PARAM_NUMBER,
+        0, 20.0f, 200.0f, 50.0f),
     ONE(pose_speed_mps, "pose_speed", "m/s", "faster is no hand: such poses are rejected",
         PARAM_NUMBER, 0, 0.5f, 200.0f, 25.0f),
-    ONE(pose_turn_radps, "pose_turn", "rad/s", "likewise for turning", PARAM_NUMBER, 0, 1.0f, 1000.0f,
-        150.0f),
+    ONE(pose_turn_radps, "pose_turn", "rad/s", "likewise for turning", PARAM_NUMBER, 0, 1.0f,
+        1000.0f, 150.0f),
     ONE(angles_hz, "angles_rate", "Hz", "how often ANGLES are sent", PARAM_NUMBER, 0, 1.0f, 2000.0f,
         100.0f),
     ONE(nodes_hz, "nodes_rate", "Hz", "how often NODES are sent, 0: never", PARAM_NUMBER, 0, 0.0f,
         500.0f, 0.0f),
-    ONE(pose_log, "pose_log", "", "1: the exact pose of every tick is sent", PARAM_WHOLE, 0, 0.0f, 1.0f,
-        0.0f),
-    ONE(blend_s, "blend", "s", "other parameters take over within this time", PARAM_NUMBER, 0, 0.05f,
-        5.0f, 0.3f),
+    ONE(pose_log, "pose_log", "", "1: the exact pose of every tick is sent", PARAM_WHOLE, 0, 0.0f,
+        1.0f, 0.0f),
+    ONE(blend_s, "blend", "s", "other parameters take over within this time", PARAM_NUMBER, 0,
+        0.05f, 5.0f, 0.3f),
     ONE(servo_hz, "servo_rate", "Hz", "how often servos get new goals", PARAM_NUMBER,
         PARAM_DISARMED_ONLY, 10.0f, 2000.0f, 500.0f),
     ONE(servo_rate_radps, "servo_speed", "rad/s", "most speed of a servo", PARAM_NUMBER,
         PARAM_DISARMED_ONLY, 0.1f, 100.0f, 12.0f),
     ONE(servo_acceleration_radps2, "servo_acceleration", "rad/s^2", "most acceleration of a servo",
         PARAM_NUMBER, PARAM_DISARMED_ONLY, 1.0f, 10000.0f, 600.0f),
-    SERVO(servo_id, "servo_id", "", "on the bus, or the PWM channel", PARAM_WHOLE, 0.0f, 252.0f, 0.0f),
+    SERVO(servo_id, "servo_id", "", "on the bus, or the PWM channel", PARAM_WHOLE, 0.0f, 252.0f,
+          0.0f),
     SERVO(servo_sign, "servo_sign", "", "1, or -1 for one mounted the other way round", PARAM_WHOLE,
           -1.0f, 1.0f, 1.0f),
-    SERVO(servo_offset_rad, "servo_offset", "rad", "where the joint is straight", PARAM_NUMBER, -3.2f,
-          3.2f, 0.0f),
-    SERVO(servo_min_rad, "servo_min", "rad", "range of the servo, from straight", PARAM_NUMBER, -3.2f,
-          0.0f, -1.6f),
-    SERVO(servo_max_rad, "servo_max", "rad", "range of the servo, from straight", PARAM_NUMBER, 0.0f,
-          3.2f, 1.6f),
+    SERVO(servo_offset_rad, "servo_offset", "rad", "where the joint is straight", PARAM_NUMBER,
+          -3.2f, 3.2f, 0.0f),
+    SERVO(servo_min_rad, "servo_min", "rad", "range of the servo, from straight", PARAM_NUMBER,
+          -3.2f, 0.0f, -1.6f),
+    SERVO(servo_max_rad, "servo_max", "rad", "range of the servo, from straight", PARAM_NUMBER,
+          0.0f, 3.2f, 1.6f),
 };
 enum { DEVICE_FIELDS_N = sizeof DEVICE_FIELDS / sizeof DEVICE_FIELDS[0] };
 
@@ -88,15 +90,28 @@ bool params_describe(const params_set *set, int index, params_info *info)
     const int links_n = set->rod.links_n;
     if (index < ROD_FIELDS_N) {
         const rod_field *f = &rod_fields[index];
-        *info = (params_info){f->name, f->unit, f->what, f->choices, rod_kind(f), rod_flags(f),
+        *info = (params_info){f->name,
+                              f->unit,
+                              f->what,
+                              f->choices,
+                              rod_kind(f),
+                              rod_flags(f),
                               (uint16_t)(f->kind == ROD_FIELD_PER_JOINT ? links_n : 1),
-                              f->min,  f->max,  f->initial};
+                              f->min,
+                              f->max,
+                              f->initial};
     } else {
         const device_field *f = &DEVICE_FIELDS[index - ROD_FIELDS_N];
-        *info = (params_info){f->name, f->unit, f->what,
-                              f->kind == PARAM_CHOICE ? POSE_MODES : NULL, f->kind, f->flags,
+        *info = (params_info){f->name,
+                              f->unit,
+                              f->what,
+                              f->kind == PARAM_CHOICE ? POSE_MODES : NULL,
+                              f->kind,
+                              f->flags,
                               (uint16_t)(f->entries == ENTRIES_SERVOS ? 2 * links_n : 1),
-                              f->min,  f->max,  f->initial};
+                              f->min,
+                              f->max,
+                              f->initial};
     }
     return true;
 }
@@ -134,8 +149,9 @@ float params_get(const params_set *set, int index, int entry)
 /* Entries there is memory for, whatever the links are now. */
 static int entries_max(int index)
 {
-    const bool list = index < ROD_FIELDS_N ? rod_fields[index].kind == ROD_FIELD_PER_JOINT
-                                           : DEVICE_FIELDS[index - ROD_FIELDS_N].entries == ENTRIES_SERVOS;
+    const bool list = index < ROD_FIELDS_N
+                          ? rod_fields[index].kind == ROD_FIELD_PER_JOINT
+                          : DEVICE_FIELDS[index - ROD_FIELDS_N].entries == ENTRIES_SERVOS;
     return !list ? 1 : index < ROD_FIELDS_N ? ROD_MAX_LINKS : PARAMS_SERVOS_MAX;
 }
 
@@ -216,9 +232,9 @@ bool params_stage(params *p, const char *name, int first, const float *values, i
                                             text_of(REASON_READ_ONLY)});
     }
     if (values_n < 1 || first < 0 || first + values_n > entries_max(index)) {
-        return refuse(why, (params_refusal){REASON_ENTRIES, -1, (float)(first + values_n), 1.0f,
-                                            (float)info.entries_n, info.name,
-                                            text_of(REASON_ENTRIES)});
+        return refuse(why,
+                      (params_refusal){REASON_ENTRIES, -1, (float)(first + values_n), 1.0f,
+                                       (float)info.entries_n, info.name, text_of(REASON_ENTRIES)});
     }
     for (int i = 0; i < values_n; i++) {
         const uint8_t reason = wrong_with(&info, values[i]);
@@ -280,7 +296,8 @@ static bool check_rod(const params_set *set, params_refusal *why)
     rod_refusal refusal;
     rod_error error = rod_params_check(&set->rod, &refusal);
     int row_n;
-    static contour trial; /* 4 KB that no stack of a board needs to hold; the main loop is alone here */
+    static contour
+        trial; /* 4 KB that no stack of a board needs to hold; the main loop is alone here */
     if (error == ROD_OK) {
         error = contour_prepare(&trial, &set->rod, &row_n);
         refusal = (rod_refusal){error, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
@@ -302,17 +319,17 @@ bool params_check(const params *p, bool all_allowed, params_refusal *why)
         (void)params_describe(&p->staged, i, &info);
         const int entry = info.flags & PARAM_DISARMED_ONLY ? difference(p, i, info.entries_n) : -1;
         if (entry >= 0) {
-            return refuse(why, (params_refusal){REASON_DISARMED_ONLY,
-                                                info.entries_n > 1 ? entry : -1,
-                                                params_get(&p->staged, i, entry), info.min, info.max,
-                                                info.name, text_of(REASON_DISARMED_ONLY)});
+            return refuse(why,
+                          (params_refusal){REASON_DISARMED_ONLY, info.entries_n > 1 ? entry : -1,
+                                           params_get(&p->staged, i, entry), info.min, info.max,
+                                           info.name, text_of(REASON_DISARMED_ONLY)});
         }
     }
     for (int servo = 0; servo < 2 * p->staged.rod.links_n; servo++) {
         const float sign = p->staged.device.servo_sign[servo];
         if (sign > -1.0f && sign < 1.0f) {
-            return refuse(why, (params_refusal){REASON_BOUNDS, servo, sign, -1.0f, 1.0f, "servo_sign",
-                                                "must be 1 or -1"});
+            return refuse(why, (params_refusal){REASON_BOUNDS, servo, sign, -1.0f, 1.0f,
+                                                "servo_sign", "must be 1 or -1"});
         }
     }
     return check_rod(&p->staged, why);

@@ -21,19 +21,19 @@ enum { PARAMS_SERVOS_MAX = 2 * ROD_MAX_LINKS };
 
 /* What the device itself can be told, beside the rod's parameters. */
 typedef struct {
-    float pose_mode;             /* 0 predict, 1 interpolate */
-    float pose_hold_ms;          /* without a pose for so long: HOLD */
-    float pose_speed_mps;        /* faster is no hand: the pose is rejected */
+    float pose_mode;      /* 0 predict, 1 interpolate */
+    float pose_hold_ms;   /* without a pose for so long: HOLD */
+    float pose_speed_mps; /* faster is no hand: the pose is rejected */
     float pose_turn_radps;
-    float angles_hz;             /* rate of ANGLES */
-    float nodes_hz;              /* rate of NODES; 0: none */
-    float pose_log;              /* 1: POSE_LOG every tick */
-    float blend_s;               /* a preset or other parameters take over within this time */
-    float servo_hz;              /* rate of servo output */
-    float servo_rate_radps;      /* most speed of a servo */
+    float angles_hz;        /* rate of ANGLES */
+    float nodes_hz;         /* rate of NODES; 0: none */
+    float pose_log;         /* 1: POSE_LOG every tick */
+    float blend_s;          /* a preset or other parameters take over within this time */
+    float servo_hz;         /* rate of servo output */
+    float servo_rate_radps; /* most speed of a servo */
     float servo_acceleration_radps2;
-    float servo_id[PARAMS_SERVOS_MAX];     /* on the bus, or the PWM channel */
-    float servo_sign[PARAMS_SERVOS_MAX];   /* 1 or -1 */
+    float servo_id[PARAMS_SERVOS_MAX];   /* on the bus, or the PWM channel */
+    float servo_sign[PARAMS_SERVOS_MAX]; /* 1 or -1 */
     float servo_offset_rad[PARAMS_SERVOS_MAX];
     float servo_min_rad[PARAMS_SERVOS_MAX];
     float servo_max_rad[PARAMS_SERVOS_MAX];

@@ -55,16 +55,17 @@ void telemetry_boot(device *d, const hal_boot *boot)
     const settings *s = &d->settings;
     const message m = {
         .type = MESSAGE_BOOT_REPORT,
-        .boot_report = {.cause = (uint8_t)boot->cause,
-                        .fault = boot->cause == HAL_RESET_FAULT ? FAULT_CODE_PROCESSOR : FAULT_CODE_NONE,
-                        .settings = ORIGINS[s->origin],
-                        .clock = boot->clock_kind,
-                        .flags = boot->estop_ignored ? BOOT_ESTOP_IGNORED : 0,
-                        .clock_hz = boot->clock_hz,
-                        .settings_sequence = s->active >= 0 ? s->sector[s->active].newest.sequence : 0,
-                        .pc = boot->pc,
-                        .lr = boot->lr,
-                        .cfsr = boot->cfsr}};
+        .boot_report = {
+            .cause = (uint8_t)boot->cause,
+            .fault = boot->cause == HAL_RESET_FAULT ? FAULT_CODE_PROCESSOR : FAULT_CODE_NONE,
+            .settings = ORIGINS[s->origin],
+            .clock = boot->clock_kind,
+            .flags = boot->estop_ignored ? BOOT_ESTOP_IGNORED : 0,
+            .clock_hz = boot->clock_hz,
+            .settings_sequence = s->active >= 0 ? s->sector[s->active].newest.sequence : 0,
+            .pc = boot->pc,
+            .lr = boot->lr,
+            .cfsr = boot->cfsr}};
     telemetry_hello(d, 0);
     (void)link_send(&d->link, &m, d->now_us);
 }
@@ -98,13 +99,13 @@ static void send_angles(device *d)
                             .solved_ago_us = short_us(now_us - d->solved_us),
                             .state = (uint8_t)d->supervisor.state,
                             .angles_n = (uint16_t)links_n}};
-    m.angles.flags = (uint8_t)((d->body.finite ? 0 : ANGLES_NOT_FINITE) |
-                               (acted & SERVO_AT_ANGLE ? ANGLES_LIMITED_ANGLE : 0) |
-                               (acted & SERVO_AT_ACCEL ? ANGLES_LIMITED_ACCELERATION : 0) |
-                               (acted & SERVO_AT_RATE ? ANGLES_LIMITED_RATE : 0) |
-                               (servo_blend_done(&d->body.blend) ? 0 : ANGLES_BLENDING) |
-                               (is_predicted(d) ? ANGLES_PREDICTED : 0) |
-                               (d->pose.valid ? 0 : ANGLES_NO_POSE));
+    m.angles.flags =
+        (uint8_t)((d->body.finite ? 0 : ANGLES_NOT_FINITE) |
+                  (acted & SERVO_AT_ANGLE ? ANGLES_LIMITED_ANGLE : 0) |
+                  (acted & SERVO_AT_ACCEL ? ANGLES_LIMITED_ACCELERATION : 0) |
+                  (acted & SERVO_AT_RATE ? ANGLES_LIMITED_RATE : 0) |
+                  (servo_blend_done(&d->body.blend) ? 0 : ANGLES_BLENDING) |
+                  (is_predicted(d) ? ANGLES_PREDICTED : 0) | (d->pose.valid ? 0 : ANGLES_NO_POSE));
     body_angles(&d->body, angles_rad);
     for (int i = 0; i < links_n; i++) {
         m.angles.angles_tenth_mrad[i][0] = tenth_mrad(angles_rad[i][ROD_THETA]);
@@ -119,11 +120,13 @@ static void send_nodes(device *d)
     const int nodes_n = rod_nodes(&d->body.rod, nodes_m);
     for (int first = 0; first < nodes_n; first += MESSAGES_NODES_MAX) {
         const int left = nodes_n - first;
-        message m = {.type = MESSAGE_NODES,
-                     .nodes = {.tick = d->tick,
-                               .first_node = (uint16_t)first,
-                               .rod_nodes_n = (uint16_t)nodes_n,
-                               .nodes_n = (uint16_t)(left < MESSAGES_NODES_MAX ? left : MESSAGES_NODES_MAX)}};
+        message m = {
+            .type = MESSAGE_NODES,
+            .nodes = {.tick = d->tick,
+                      .first_node = (uint16_t)first,
+                      .rod_nodes_n = (uint16_t)nodes_n,
+                      .nodes_n =
+                          (uint16_t)(left < MESSAGES_NODES_MAX ? left : MESSAGES_NODES_MAX)}};
         for (int i = 0; i < m.nodes.nodes_n; i++) {
             m.nodes.nodes_m[i][0] = nodes_m[first + i].x;
             m.nodes.nodes_m[i][1] = nodes_m[first + i].y;
@@ -154,19 +157,20 @@ static void send_heartbeat(device *d)
     const supervisor_duty *duty = &supervisor_duties[d->supervisor.state];
     const message m = {
         .type = MESSAGE_HEARTBEAT,
-        .heartbeat = {.state = (uint8_t)d->supervisor.state,
-                      .fault = (uint8_t)(d->faults.first + 1),
-                      .flags = (uint8_t)((duty->servo_power ? HEARTBEAT_TORQUE : 0) |
-                                         (d->hal->estop_pressed(d->hal->context) ? HEARTBEAT_ESTOP_OPEN : 0) |
-                                         (d->params.is_staged ? HEARTBEAT_STAGED : 0) |
-                                         (d->unsaved ? HEARTBEAT_UNSAVED : 0) |
-                                         (stream.state == POSE_STREAM_GOOD ? HEARTBEAT_POSES_GOOD : 0) |
-                                         (d->poses.clock.synced ? HEARTBEAT_CLOCK_KNOWN : 0)),
-                      .uptime_ms = d->uptime_ms,
-                      .tick = d->tick,
-                      .params_generation = d->params.generation,
-                      .tick_mean_us = short_us(d->ticks_timed_n > 0 ? d->tick_time_us / d->ticks_timed_n : 0),
-                      .tick_max_us = short_us(d->tick_worst_us)}};
+        .heartbeat = {
+            .state = (uint8_t)d->supervisor.state,
+            .fault = (uint8_t)(d->faults.first + 1),
+            .flags = (uint8_t)((duty->servo_power ? HEARTBEAT_TORQUE : 0) |
+                               (d->hal->estop_pressed(d->hal->context) ? HEARTBEAT_ESTOP_OPEN : 0) |
+                               (d->params.is_staged ? HEARTBEAT_STAGED : 0) |
+                               (d->unsaved ? HEARTBEAT_UNSAVED : 0) |
+                               (stream.state == POSE_STREAM_GOOD ? HEARTBEAT_POSES_GOOD : 0) |
+                               (d->poses.clock.synced ? HEARTBEAT_CLOCK_KNOWN : 0)),
+            .uptime_ms = d->uptime_ms,
+            .tick = d->tick,
+            .params_generation = d->params.generation,
+            .tick_mean_us = short_us(d->ticks_timed_n > 0 ? d->tick_time_us / d->ticks_timed_n : 0),
+            .tick_max_us = short_us(d->tick_worst_us)}};
     d->tick_time_us = d->ticks_timed_n = d->tick_worst_us = 0;
     (void)link_send(&d->link, &m, d->now_us);
 }
@@ -176,49 +180,48 @@ void telemetry_stats(device *d, uint16_t request_id)
     const frame_counts *f = &d->link.decoder.counts;
     const link_counts *l = &d->link.counts;
     const uint32_t *verdicts = d->poses.count;
-    const message m = {
-        .type = MESSAGE_STATS,
-        .stats = {.request_id = request_id,
-                  .uptime_ms = d->uptime_ms,
-                  .frames_good = f->good,
-                  .frames_crc = f->crc,
-                  .frames_cobs = f->cobs,
-                  .frames_too_short = f->too_short,
-                  .frames_too_long = f->too_long,
-                  .messages_unknown = l->unknown,
-                  .messages_length = l->length,
-                  .poses_accepted = verdicts[POSE_ACCEPTED],
-                  .poses_duplicate = verdicts[POSE_DUPLICATE],
-                  .poses_late = verdicts[POSE_LATE],
-                  .poses_lost = d->poses.sequence.lost,
-                  .poses_wrong_session = verdicts[POSE_WRONG_SESSION],
-                  .poses_stale = verdicts[POSE_STALE],
-                  .poses_future = verdicts[POSE_FUTURE],
-                  .poses_not_finite = verdicts[POSE_NOT_FINITE],
-                  .poses_bad_quaternion = verdicts[POSE_BAD_QUATERNION],
-                  .poses_teleport = verdicts[POSE_TELEPORT],
-                  .poses_too_fast = verdicts[POSE_TOO_FAST],
-                  .commands_done = d->commands_done,
-                  .commands_refused = d->commands_refused,
-                  .commands_repeated = d->commands_repeated,
-                  .deadline_misses = d->deadline_misses,
-                  .solver_not_finite = d->faults.solver_failures,
-                  .limited_angle = d->limited_ticks[1],
-                  .limited_acceleration = d->limited_ticks[2],
-                  .limited_rate = d->limited_ticks[3],
-                  .holds = d->holds,
-                  .servo_errors = d->faults.counts[FAULT_SERVO],
-                  .line_overruns = d->hal->line_overruns(d->hal->context),
-                  .line_framing = d->hal->line_framing_errors(d->hal->context),
-                  .dropped_logs = l->dropped[MESSAGE_DROP_LOGS],
-                  .dropped_telemetry = l->dropped[MESSAGE_DROP_TELEMETRY],
-                  .dropped_nodes = l->dropped[MESSAGE_DROP_NODES],
-                  .dropped_angles = l->dropped[MESSAGE_DROP_ANGLES],
-                  .answers_lost = l->answers_lost,
-                  .clock_exchanges = d->poses.clock.used,
-                  .clock_left_out = d->poses.clock.left_out,
-                  .clock_jumps = d->poses.clock.jumps,
-                  .tick_max_us = d->tick_max_us}};
+    const message m = {.type = MESSAGE_STATS,
+                       .stats = {.request_id = request_id,
+                                 .uptime_ms = d->uptime_ms,
+                                 .frames_good = f->good,
+                                 .frames_crc = f->crc,
+                                 .frames_cobs = f->cobs,
+                                 .frames_too_short = f->too_short,
+                                 .frames_too_long = f->too_long,
+                                 .messages_unknown = l->unknown,
+                                 .messages_length = l->length,
+                                 .poses_accepted = verdicts[POSE_ACCEPTED],
+                                 .poses_duplicate = verdicts[POSE_DUPLICATE],
+                                 .poses_late = verdicts[POSE_LATE],
+                                 .poses_lost = d->poses.sequence.lost,
+                                 .poses_wrong_session = verdicts[POSE_WRONG_SESSION],
+                                 .poses_stale = verdicts[POSE_STALE],
+                                 .poses_future = verdicts[POSE_FUTURE],
+                                 .poses_not_finite = verdicts[POSE_NOT_FINITE],
+                                 .poses_bad_quaternion = verdicts[POSE_BAD_QUATERNION],
+                                 .poses_teleport = verdicts[POSE_TELEPORT],
+                                 .poses_too_fast = verdicts[POSE_TOO_FAST],
+                                 .commands_done = d->commands_done,
+                                 .commands_refused = d->commands_refused,
+                                 .commands_repeated = d->commands_repeated,
+                                 .deadline_misses = d->deadline_misses,
+                                 .solver_not_finite = d->faults.solver_failures,
+                                 .limited_angle = d->limited_ticks[1],
+                                 .limited_acceleration = d->limited_ticks[2],
+                                 .limited_rate = d->limited_ticks[3],
+                                 .holds = d->holds,
+                                 .servo_errors = d->faults.counts[FAULT_SERVO],
+                                 .line_overruns = d->hal->line_overruns(d->hal->context),
+                                 .line_framing = d->hal->line_framing_errors(d->hal->context),
+                                 .dropped_logs = l->dropped[MESSAGE_DROP_LOGS],
+                                 .dropped_telemetry = l->dropped[MESSAGE_DROP_TELEMETRY],
+                                 .dropped_nodes = l->dropped[MESSAGE_DROP_NODES],
+                                 .dropped_angles = l->dropped[MESSAGE_DROP_ANGLES],
+                                 .answers_lost = l->answers_lost,
+                                 .clock_exchanges = d->poses.clock.used,
+                                 .clock_left_out = d->poses.clock.left_out,
+                                 .clock_jumps = d->poses.clock.jumps,
+                                 .tick_max_us = d->tick_max_us}};
     (void)link_send(&d->link, &m, d->now_us);
 }
 

@@ -23,9 +23,9 @@ static int factor_system(const rod_params *params, penta *system)
         const float beta_after = i + 1 < n ? beta[i + 1] : 0.0f;
         const float spring = paper ? 0.0f : params->spring[i];
         const float rate = params->drag[i] + (paper ? 0.0f : params->damper[i]);
-        diagonal[i] = params->inertia[i] + half_dt * rate +
-                      share * (spring + beta[i] + beta_after + eta_before + 4.0f * eta_here +
-                               eta_after);
+        diagonal[i] =
+            params->inertia[i] + half_dt * rate +
+            share * (spring + beta[i] + beta_after + eta_before + 4.0f * eta_here + eta_after);
         off1[i] = -share * (beta[i] + 2.0f * eta_here + 2.0f * eta_before);
         off2[i] = share * eta_before;
     }

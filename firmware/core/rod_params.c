@@ -8,6 +8,7 @@
 static const char *const MODELS[] = {"contour"};
 static const char *const SCHEMES[] = {"midpoint", "paper"};
 
+// clang-format off
 #define CHOICE(member, name, what, error, names, count)                                            \
     {                                                                                              \
         name, "", "", what, ROD_FIELD_CHOICE, error, 0.0f, (float)((count)-1), 0.0f, names,        \
@@ -23,6 +24,7 @@ static const char *const SCHEMES[] = {"midpoint", "paper"};
         name, symbol, unit, what, kind, error, min, max, initial, NULL,                            \
             offsetof(rod_params, member)                                                           \
     }
+// clang-format on
 
 const rod_field rod_fields[ROD_FIELDS_N] = {
     CHOICE(model, "model", "which mathematics bends the rod", ROD_E_MODEL, MODELS, ROD_MODEL_COUNT),

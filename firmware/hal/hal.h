@@ -24,8 +24,9 @@ typedef enum {
 typedef struct {
     hal_reset_cause cause;
     uint32_t pc, lr, cfsr;
-    uint32_t clock_hz;  /* of the core, as reached */
-    uint8_t clock_kind; /* 0 HSE through the PLL, 1 HSI through the PLL, 2 HSI, 3 emulator, 4 host */
+    uint32_t clock_hz; /* of the core, as reached */
+    uint8_t
+        clock_kind; /* 0 HSE through the PLL, 1 HSI through the PLL, 2 HSI, 3 emulator, 4 host */
     bool estop_ignored; /* no such pin here (emulator, host) */
 } hal_boot;
 
@@ -63,7 +64,8 @@ typedef struct {
      * 2 s and is called only before the servos have power. False: the hardware reported an error. */
     uint32_t (*flash_sector_size)(void *context);
     void (*flash_read)(void *context, int sector, uint32_t offset, void *bytes, size_t bytes_n);
-    bool (*flash_write)(void *context, int sector, uint32_t offset, const void *bytes, size_t bytes_n);
+    bool (*flash_write)(void *context, int sector, uint32_t offset, const void *bytes,
+                        size_t bytes_n);
     bool (*flash_erase)(void *context, int sector);
 
     /* Once a tick, by the main loop, and only if all of it checked in. */

@@ -116,7 +116,8 @@ static void flash_read(void *context, int sector, uint32_t offset, void *bytes, 
     memcpy(bytes, world.flash[sector] + offset, bytes_n);
 }
 
-static bool flash_write(void *context, int sector, uint32_t offset, const void *bytes, size_t bytes_n)
+static bool flash_write(void *context, int sector, uint32_t offset, const void *bytes,
+                        size_t bytes_n)
 {
     (void)context;
     PROMISE(offset % 4 == 0 && bytes_n % 4 == 0 && offset + bytes_n <= FLASH_BYTES);
@@ -149,7 +150,8 @@ static void reboot(void *context)
 
 static void start(void)
 {
-    static const device_config CONFIG = {.tick_s = 1e-3f, .tick_max_hz = 1000.0f, .name = "fuzz", .build = "", .links_n = 5};
+    static const device_config CONFIG = {
+        .tick_s = 1e-3f, .tick_max_hz = 1000.0f, .name = "fuzz", .build = "", .links_n = 5};
     static const hal_boot BOOT = {.clock_kind = CLOCK_HOST};
     world.rebooted = world.powered = false;
     device_init(&world.device, &world.hal, &CONFIG, &BOOT);
@@ -159,7 +161,8 @@ static void say(uint8_t type, uint16_t seq, const uint8_t *payload, size_t paylo
 {
     const frame f = {type, SESSION, seq, world.now_us, payload, payload_n};
     if (world.line_n + FRAME_WIRE_BYTES(payload_n) <= sizeof world.line) {
-        world.line_n += frame_encode(&f, world.line + world.line_n, sizeof world.line - world.line_n);
+        world.line_n +=
+            frame_encode(&f, world.line + world.line_n, sizeof world.line - world.line_n);
     }
 }
 
@@ -191,7 +194,8 @@ static void good_pose(void)
 
 static void say_hello(void)
 {
-    const message m = {.type = MESSAGE_HELLO, .hello = {.request_id = 1, .protocol_major = PROTOCOL_MAJOR}};
+    const message m = {.type = MESSAGE_HELLO,
+                       .hello = {.request_id = 1, .protocol_major = PROTOCOL_MAJOR}};
     uint8_t payload[128];
     const int n = messages_pack(&m, payload, sizeof payload);
     say(MESSAGE_HELLO, 0, payload, (size_t)n);
@@ -202,8 +206,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *input, size_t input_n)
 {
     memset(&world, 0, sizeof world);
     memset(world.flash, 0xFF, sizeof world.flash);
-    world.hal = (hal){NULL, now_us, line_read, line_write, line_free, none, none, servo_power, servo_write, servo_read, yes,
-                      no, sector_size, flash_read, flash_write, flash_erase, nothing, reboot};
+    world.hal = (hal){NULL,        now_us,      line_read,   line_write,  line_free, none,
+                      none,        servo_power, servo_write, servo_read,  yes,       no,
+                      sector_size, flash_read,  flash_write, flash_erase, nothing,   reboot};
     start();
     say_hello();
     for (size_t at = 0; at + 2 <= input_n;) {

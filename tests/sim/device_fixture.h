@@ -99,9 +99,9 @@ static void ask_simply(uint8_t type)
 
 static void pose_at(float x_m)
 {
-    const message m = {.type = MESSAGE_POSE,
-                       .pose = {.position_m = {x_m, 0.0f, 0.0f},
-                                .quaternion_xyzw = {0.0f, 0.0f, 0.0f, 1.0f}}};
+    const message m = {
+        .type = MESSAGE_POSE,
+        .pose = {.position_m = {x_m, 0.0f, 0.0f}, .quaternion_xyzw = {0.0f, 0.0f, 0.0f, 1.0f}}};
     say_as(&m, ++b->pose_seq);
 }
 
@@ -136,7 +136,8 @@ __attribute__((unused)) static void sway(int n, int period_ticks, float amplitud
 {
     for (int i = 0; i < n; i++) {
         if (i % period_ticks == 0) {
-            const trig_pair t = trig_sincos(3.0f * (float)b->pose_seq * (float)period_ticks * 1e-3f);
+            const trig_pair t =
+                trig_sincos(3.0f * (float)b->pose_seq * (float)period_ticks * 1e-3f);
             pose_at(amplitude_m * t.sin);
         }
         tick();

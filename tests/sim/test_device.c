@@ -150,9 +150,8 @@ static void test_estop_is_obeyed_from_a_stranger(void)
 static void test_a_servo_error_is_a_fault_that_is_told_once(void)
 {
     get_active();
-    b->host.injection.faults[0] = (injected_fault){.kind = INJECT_SERVO,
-                                                   .start_s = b->host.elapsed_s,
-                                                   .duration_s = 0.01};
+    b->host.injection.faults[0] =
+        (injected_fault){.kind = INJECT_SERVO, .start_s = b->host.elapsed_s, .duration_s = 0.01};
     b->host.injection.faults_n = 1;
     sway(100, 10, 0.05f);
     TEST_ASSERT_EQUAL_INT(SUPERVISOR_FAULT, state_now());
@@ -184,7 +183,8 @@ static void test_presets_change_without_a_jump(void)
             const float dt = map->period_s;
             for (int s = 0; s < map->servos_n; s++) {
                 const float now = (servo_map_goals(map)[s] - last[s]) / dt;
-                TEST_ASSERT_TRUE(now <= p->servo_rate_radps * 1.001f && now >= -p->servo_rate_radps * 1.001f);
+                TEST_ASSERT_TRUE(now <= p->servo_rate_radps * 1.001f &&
+                                 now >= -p->servo_rate_radps * 1.001f);
                 const float change_of_speed = (now - speed[s]) / dt;
                 const float most = p->servo_acceleration_radps2 * 1.001f + 0.5f;
                 TEST_ASSERT_TRUE(first || (change_of_speed <= most && change_of_speed >= -most));

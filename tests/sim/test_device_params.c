@@ -17,7 +17,8 @@ void tearDown(void)
 
 static void set(const char *name, int first, float value)
 {
-    message m = {.type = MESSAGE_PARAM_SET, .param_set = {.first = (uint16_t)first, .values_n = 1, .values = {value}}};
+    message m = {.type = MESSAGE_PARAM_SET,
+                 .param_set = {.first = (uint16_t)first, .values_n = 1, .values = {value}}};
     strcpy(m.param_set.name, name);
     ask(m);
     tick();
@@ -46,7 +47,8 @@ static void test_every_parameter_tells_what_it_is(void)
         strcpy(get.param_get.name, info->name);
         ask(get);
         tick();
-        TEST_ASSERT_EQUAL_UINT16(info->entries_n, b->newest[MESSAGE_PARAM_VALUE].param_value.values_n);
+        TEST_ASSERT_EQUAL_UINT16(info->entries_n,
+                                 b->newest[MESSAGE_PARAM_VALUE].param_value.values_n);
     }
     ask((message){.type = MESSAGE_PARAM_LIST, .param_list = {.index = (uint16_t)params_n}});
     tick();
@@ -136,7 +138,8 @@ static void test_requests_are_done_once(void)
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
     for (int again = 0; again < 3; again++) {
-        const message m = {.type = MESSAGE_PARAM_COMMIT, .param_commit = {.request_id = b->request_id}};
+        const message m = {.type = MESSAGE_PARAM_COMMIT,
+                           .param_commit = {.request_id = b->request_id}};
         say_as(&m, b->request_id);
         tick();
     }
@@ -238,10 +241,11 @@ static void test_every_pose_is_accounted_for(void)
     unsigned sent_n = 0;
     for (int round = 0; round < 50; round++) {
         for (int k = 0; k < 4; k++, sent_n++) {
-            const message m = {.type = MESSAGE_POSE,
-                               .pose = {.position_m = {k == 3 && round % 7 == 0 ? 50.0f : 0.0f, 0.0f, 0.0f},
-                                        .quaternion_xyzw = {0.0f, 0.0f, round % 11 == 0 ? NAN : 0.0f, 1.0f},
-                                        .age_us = k == 0 && round % 5 == 0 ? 60000 : 0}};
+            const message m = {
+                .type = MESSAGE_POSE,
+                .pose = {.position_m = {k == 3 && round % 7 == 0 ? 50.0f : 0.0f, 0.0f, 0.0f},
+                         .quaternion_xyzw = {0.0f, 0.0f, round % 11 == 0 ? NAN : 0.0f, 1.0f},
+                         .age_us = k == 0 && round % 5 == 0 ? 60000 : 0}};
             b->pose_seq = (uint16_t)(b->pose_seq + odd[k]);
             say_as(&m, b->pose_seq);
             ticks(10);
@@ -254,7 +258,8 @@ static void test_every_pose_is_accounted_for(void)
     }
     TEST_ASSERT_EQUAL_UINT32(sent_n, sum);
     TEST_ASSERT_TRUE(in->count[POSE_DUPLICATE] > 0 && in->count[POSE_STALE] > 0 &&
-                     in->count[POSE_NOT_FINITE] > 0 && in->count[POSE_TELEPORT] > 0 && in->sequence.lost > 0);
+                     in->count[POSE_NOT_FINITE] > 0 && in->count[POSE_TELEPORT] > 0 &&
+                     in->sequence.lost > 0);
 }
 
 int main(void)

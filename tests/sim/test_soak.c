@@ -38,7 +38,8 @@ static void stay_armed(uint32_t ms)
 static void test_hours_of_noise_end_active_with_everything_counted(void)
 {
     const uint32_t ticks_n = (uint32_t)(hours * 3600.0 * 1000.0);
-    b->host.injection.faults[0] = (injected_fault){.kind = INJECT_NOISE, .duration_s = 1e9, .amount = 0.001};
+    b->host.injection.faults[0] =
+        (injected_fault){.kind = INJECT_NOISE, .duration_s = 1e9, .amount = 0.001};
     b->host.injection.faults_n = 1;
     while (b->seen_n[MESSAGE_HELLO] == 0 || b->newest[MESSAGE_HELLO].hello.request_id == 0) {
         say_hello(100.0f);
@@ -61,7 +62,8 @@ static void test_hours_of_noise_end_active_with_everything_counted(void)
         counted += in->count[i];
     }
     const frame_counts *frames = &b->host.device.link.decoder.counts;
-    printf("%.2f hours: %u poses, %u accepted, %u lost, %u holds, %.1f %% of the time ACTIVE; frames: %u good, %u "
+    printf("%.2f hours: %u poses, %u accepted, %u lost, %u holds, %.1f %% of the time ACTIVE; "
+           "frames: %u good, %u "
            "crc, %u cobs, %u short, %u long\n",
            hours, poses_n, in->count[POSE_ACCEPTED], in->sequence.lost, b->host.device.holds,
            100.0 * active_n / ticks_n, frames->good, frames->crc, frames->cobs, frames->too_short,

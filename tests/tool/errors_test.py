@@ -108,7 +108,8 @@ class WrongDevice(ToolCase):
 
     def test_versions(self):
         self.fails(4, ["info", "--port", self.fake("--major", "2").port], "speaks protocol 2.0", "get a newer limber")
-        err = self.fails(4, ["info", "--port", self.fake("--version-nack").port], "other major version", "2.0 is spoken")
+        err = self.fails(4, ["info", "--port", self.fake("--nack", 1, "--reason", 2).port],
+                         "other major version", "not with me")
         self.assertIn("this limber", err)
         code, out, err = self.run_tool("info", "--port", self.fake("--other-hash").port)
         self.assertEqual(code, 0)
@@ -146,6 +147,11 @@ class Answers(ToolCase):
         self.assertEqual(device.poses(), [])
         device = self.fake("--nack", 0x31, "--reason", 9, "--state", STATES["DISARMED"])
         self.run_tool("stream", slow, "--port", device.port, "--speed", "3")  # nothing known of a timeout: tried
+
+    def test_device_finds_the_source_too_slow(self):
+        path = self.write("track.txt", track(50, rate_hz=25))
+        self.fails(4, ["stream", path, "--port", self.fake("--nack", 1, "--reason", 8).port],
+                   "track.txt: 25.0 poses a second are too slow", "hold timeout", "--resample 100")
 
     def test_latched(self):
         device = self.fake("--state", STATES["FAULT"])

@@ -67,13 +67,13 @@ static void say_hello(fake_device *d, uint16_t request_id)
 static void take_hello(fake_device *d, const message_hello *hello, uint8_t session)
 {
     fake_tell("hello %s %s pose_hz %g", hello->device, hello->build, (double)hello->pose_hz);
-    if (d->ways.version_nack) {
+    if (d->ways.nack_type == MESSAGE_HELLO) {
         message nack = {.type = MESSAGE_NACK,
                         .nack = {.request_id = hello->request_id,
                                  .answered = MESSAGE_HELLO,
-                                 .reason = REASON_VERSION,
+                                 .reason = (uint8_t)d->ways.nack_reason,
                                  .entry = -1,
-                                 .text = "2.0 is spoken here"}};
+                                 .text = "not with me"}};
         fake_send(d, &nack);
         return;
     }

@@ -14,7 +14,7 @@ enum { FAKE_PARAMS_N = 6, FAKE_JOINTS_N = 3 };
 /* How it misbehaves; all zeros: not at all. */
 typedef struct {
     const char *pty_link, *text; /* text: says only that, like a board of another make */
-    bool mute, deaf, version_nack, other_hash, garbage, reboots, still;
+    bool mute, deaf, other_hash, garbage, reboots, still;
     int major, state, tick_hz, angles_hz, nack_type, nack_reason;
     int drop_requests;            /* ignores each request so many times */
     int drop_poses, reject_poses; /* every so-many-th */

@@ -16,7 +16,7 @@
 int main(int argc, char **argv)
 {
     static fake_device d = {.ways = {.tick_hz = 1000, .angles_hz = 200, .state = DEVICE_DISARMED}};
-    int mute = 0, deaf = 0, version_nack = 0, other_hash = 0, garbage = 0, reboots = 0, still = 0;
+    int mute = 0, deaf = 0, other_hash = 0, garbage = 0, reboots = 0, still = 0;
     const struct poptOption table[] = {{"pty", 0, POPT_ARG_STRING, &d.ways.pty_link, 0, NULL, NULL},
                                        {"text", 0, POPT_ARG_STRING, &d.ways.text, 0, NULL, NULL},
                                        {"hold", 0, POPT_ARG_FLOAT, &d.ways.hold_ms, 0, NULL, NULL},
@@ -36,7 +36,6 @@ int main(int argc, char **argv)
                                        NUMBER("reopen-ms", reopen_ms),
                                        SWITCH("mute", mute),
                                        SWITCH("deaf", deaf),
-                                       SWITCH("version-nack", version_nack),
                                        SWITCH("other-hash", other_hash),
                                        SWITCH("garbage", garbage),
                                        SWITCH("reboots", reboots),
@@ -50,7 +49,6 @@ int main(int argc, char **argv)
     }
     d.ways.mute = mute || d.ways.text != NULL;
     d.ways.deaf = deaf;
-    d.ways.version_nack = version_nack;
     d.ways.other_hash = other_hash;
     d.ways.garbage = garbage;
     d.ways.reboots = reboots;

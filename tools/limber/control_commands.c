@@ -34,7 +34,8 @@ static int ask(const control *c, link_options *link, session *s)
         result = session_start(s, link->chosen, 0.0f);
     }
     if (result == SIM_OK) {
-        result = session_request(s, &(message){.type = (uint8_t)c->request});
+        const message request = {.type = (uint8_t)c->request};
+        result = session_request(s, &request);
     }
     if (result == SIM_OK) {
         s->heartbeat_known = false; /* the state from here on */

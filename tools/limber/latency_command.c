@@ -47,9 +47,9 @@ static int refuse_if_armed(const session *s)
     }
 }
 
-static int measure(session *s, pose_delays *d, double seconds, double rate_hz)
+static int measure(session *s, listening *l, double seconds, double rate_hz)
 {
-    listening l = {d, &s->clock};
+    pose_delays *const d = l->delays;
     const message pose = {.type = MESSAGE_POSE,
                           .pose = {.quaternion_xyzw = {0.0f, 0.0f, 0.0f, 1.0f},
                                    .quality = UINT8_MAX,
@@ -57,7 +57,7 @@ static int measure(session *s, pose_delays *d, double seconds, double rate_hz)
     const long poses_n = (long)(seconds * rate_hz);
     pose_delays_session(d, s->device.tick_hz);
     s->listener = listen;
-    s->context = &l;
+    s->context = l;
     interrupt_catch();
     const uint64_t start_us = limber_now_us();
     for (long n = 0; n <= poses_n && !s->lost && !interrupt_came(); n++) {
@@ -142,7 +142,8 @@ static int run(poptContext context, link_options *link, session *s)
         return result;
     }
     pose_delays *const d = pose_delays_new();
-    result = d == NULL ? SIM_INTERNAL : measure(s, d, seconds, rate_hz);
+    listening l = {d, &s->clock};
+    result = d == NULL ? SIM_INTERNAL : measure(s, &l, seconds, rate_hz);
     if (result == SIM_OK) {
         print(s, d, link->json != 0);
     }

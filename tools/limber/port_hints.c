@@ -30,6 +30,7 @@ static bool process_has_open(const char *pid, const struct stat *wanted)
     if (files == NULL) {
         return false; /* somebody else's */
     }
+    // cppcheck-suppress readdirCalled ; one thread
     for (const struct dirent *entry; !found && (entry = readdir(files)) != NULL;) {
         struct stat status;
         found = fstatat(dirfd(files), entry->d_name, &status, 0) == 0 &&
@@ -48,6 +49,7 @@ static void name_holder(const char *path, char holder[80])
     if (processes == NULL) {
         return;
     }
+    // cppcheck-suppress readdirCalled ; one thread
     for (const struct dirent *entry; *holder == '\0' && (entry = readdir(processes)) != NULL;) {
         if (isdigit((unsigned char)entry->d_name[0]) && atol(entry->d_name) != (long)getpid() &&
             process_has_open(entry->d_name, &wanted)) {

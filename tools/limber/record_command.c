@@ -25,24 +25,23 @@ static void listen(void *context, const message *m, const frame *f, uint64_t at_
     }
 }
 
-static int record(session *s, const char *path, double seconds)
+static int record(session *s, angles_csv *csv, const char *path, double seconds)
 {
-    angles_csv csv;
-    int result = angles_csv_open(&csv, path, (double)s->device.tick_hz);
+    int result = angles_csv_open(csv, path, (double)s->device.tick_hz);
     if (result != SIM_OK) {
         return result;
     }
     interrupt_catch();
     s->listener = listen;
-    s->context = &csv;
+    s->context = csv;
     const uint64_t start_us = limber_now_us(), most_us = (uint64_t)(seconds * 1e6);
     while (!s->lost && !interrupt_came() && limber_now_us() - start_us < most_us) {
         (void)session_step(s, limber_now_us() + IDLE_US, -1);
         progress_show("%.1f s, %llu angles", (double)(limber_now_us() - start_us) * 1e-6,
-                      (unsigned long long)csv.rows_n);
+                      (unsigned long long)csv->rows_n);
     }
     progress_clear();
-    const uint64_t rows_n = csv.rows_n;
+    const uint64_t rows_n = csv->rows_n;
     if (s->lost) {
         result = session_complain(s);
     } else if (rows_n == 0) {
@@ -50,7 +49,7 @@ static int record(session *s, const char *path, double seconds)
                                "should");
     }
     /* what came before the device was lost is worth keeping */
-    const int closed = angles_csv_close(&csv, SIM_OK);
+    const int closed = angles_csv_close(csv, SIM_OK);
     if (rows_n > 0 && closed == SIM_OK) {
         printf("%s: %llu rows\n", path, (unsigned long long)rows_n);
     }
@@ -79,7 +78,8 @@ static int run(poptContext context, link_options *link, session *s)
         return SIM_BAD_INPUT;
     }
     result = link_open(link, s);
-    return result == SIM_OK ? record(s, path, seconds) : result;
+    angles_csv csv;
+    return result == SIM_OK ? record(s, &csv, path, seconds) : result;
 }
 
 int limber_record_command(int argc, const char **argv)

@@ -88,12 +88,12 @@ static void take_refusal(void *context, const message *m, const frame *f, uint64
 /* One HELLO and its answer. */
 static bool greet(session *s, float pose_hz)
 {
-    message hello = {.type = MESSAGE_HELLO,
-                     .hello = {.protocol_major = PROTOCOL_MAJOR,
-                               .protocol_minor = PROTOCOL_MINOR,
-                               .layout_hash = messages_layout_hash(),
-                               .pose_hz = pose_hz}};
+    message hello = {.type = MESSAGE_HELLO};
     hello.hello.request_id = s->hello_id;
+    hello.hello.protocol_major = PROTOCOL_MAJOR;
+    hello.hello.protocol_minor = PROTOCOL_MINOR;
+    hello.hello.layout_hash = messages_layout_hash();
+    hello.hello.pose_hz = pose_hz;
     snprintf(hello.hello.device, sizeof hello.hello.device, "limber");
     snprintf(hello.hello.build, sizeof hello.hello.build, "%s", SIM_VERSION);
     s->listener = take_refusal;

@@ -34,7 +34,10 @@ __attribute__((naked)) void reset_handler(void)
 __attribute__((used)) static void start(void) __asm__("start");
 static void start(void)
 {
+    /* the linker script's symbols bound one object each, which no checker can know */
+    // cppcheck-suppress comparePointers
     memcpy(data_start, data_image, (size_t)((char *)data_end - (char *)data_start));
+    // cppcheck-suppress comparePointers
     memset(bss_start, 0, (size_t)((char *)bss_end - (char *)bss_start));
     char **argv;
     const int argc = startup_arguments(&argv);
