@@ -89,7 +89,9 @@ void device_tick(device *d);
 bool device_apply_params(device *d, bool all_new,
                          params_refusal *why); /* what is in force, to all parts */
 void commands_take(device *d, const message *m, const frame *header); /* commands.c */
-void commands_end_tick(device *d);                    /* a SAVE under way, a reboot due */
+void commands_end_tick(device *d);                     /* a SAVE under way, a reboot due */
+void param_commands_take(device *d, const message *m); /* param_commands.c */
+void param_commands_end_tick(device *d);
 void telemetry_boot(device *d, const hal_boot *boot); /* telemetry.c */
 void telemetry_send(device *d);
 void telemetry_stats(device *d, uint16_t request_id);

@@ -93,3 +93,11 @@ bool link_send(device_link *l, const message *m, uint32_t t_us)
     }
     return sent;
 }
+
+void link_text(char *field, size_t room, const char *text)
+{
+    const size_t length = strlen(text);
+    const size_t n = length < room ? length : room - 1;
+    memcpy(field, text, n);
+    field[n] = '\0';
+}

@@ -47,4 +47,7 @@ bool link_receive(device_link *l, message *m, frame *header);
 /* Send; t_us goes into the header. False if it was dropped. */
 bool link_send(device_link *l, const message *m, uint32_t t_us);
 
+/* A text into a message's field of that size, cut off where it is too long. */
+void link_text(char *field, size_t room, const char *text);
+
 #endif

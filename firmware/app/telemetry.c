@@ -4,14 +4,6 @@
 
 #include "device.h"
 
-static void copy_text(char *to, size_t room, const char *from)
-{
-    size_t n = strlen(from);
-    n = n < room ? n : room - 1;
-    memcpy(to, from, n);
-    to[n] = '\0';
-}
-
 static uint16_t short_us(uint32_t us)
 {
     return us < UINT16_MAX ? (uint16_t)us : UINT16_MAX;
@@ -20,7 +12,7 @@ static uint16_t short_us(uint32_t us)
 void telemetry_log(device *d, uint8_t level, const char *text)
 {
     message m = {.type = MESSAGE_LOG, .log = {.level = level}};
-    copy_text(m.log.text, sizeof m.log.text, text);
+    link_text(m.log.text, sizeof m.log.text, text);
     (void)link_send(&d->link, &m, d->now_us);
 }
 
@@ -39,8 +31,8 @@ void telemetry_hello(device *d, uint16_t request_id)
                            .tick_hz = 1.0f / d->config.tick_s,
                            .angles_hz = set->device.angles_hz,
                            .line_baud = d->config.line_baud}};
-    copy_text(m.hello.device, sizeof m.hello.device, d->config.name);
-    copy_text(m.hello.build, sizeof m.hello.build, d->config.build);
+    link_text(m.hello.device, sizeof m.hello.device, d->config.name);
+    link_text(m.hello.build, sizeof m.hello.build, d->config.build);
     (void)link_send(&d->link, &m, d->now_us);
 }
 
@@ -235,7 +227,7 @@ static void send_faults(device *d)
                          .fault = {.fault = (uint8_t)(cause + 1),
                                    .state = (uint8_t)d->supervisor.state,
                                    .tick = d->tick}};
-            copy_text(m.fault.text, sizeof m.fault.text, fault_infos[cause].text);
+            link_text(m.fault.text, sizeof m.fault.text, fault_infos[cause].text);
             (void)link_send(&d->link, &m, d->now_us);
         }
     }

@@ -98,6 +98,11 @@ class Tables(SimCase):
         # ten minutes, and hardly anything happens but at their end
         at_hz, _ = swing(600, lambda t: (0.001 * math.sin(t) + (t > 560) * 0.01 * math.sin(6 * math.pi * t), 0))
         self.assertAlmostEqual(at_hz, 3.0, delta=0.02)
+        # they grow along the rod, beyond half a turn as well
+        out = self.good("replay", self.tracks / "shaking.txt", "--set", "links=15", "--set", "damper=10", "--set", "drag=3")
+        lags = [float(lag) for lag in re.findall(r"([-\d.]+) deg", out)]
+        for before, lag in zip(lags, lags[1:]):
+            self.assertAlmostEqual(lag - before, 55, delta=1)
 
     def test_what_a_recorder_does_leaves_no_trace(self):
         plain = self.replay_hash(self.tracks / "shaking.txt")
