@@ -126,6 +126,7 @@ void commands_take(device *d, const message *m, const frame *header)
 {
     /* every request begins with its id */
     const uint16_t request_id = m->arm.request_id;
+    const bool stops = m->type == MESSAGE_DISARM || m->type == MESSAGE_ESTOP; /* every time */
     const bool changes = m->type >= MESSAGE_ARM && m->type <= MESSAGE_SERVO_ASSIGN &&
                          m->type != MESSAGE_PARAM_LIST && m->type != MESSAGE_PARAM_GET &&
                          m->type != MESSAGE_PRESET_LIST;
@@ -135,7 +136,7 @@ void commands_take(device *d, const message *m, const frame *header)
         }
         return;
     }
-    if (changes && m->type != MESSAGE_ESTOP && answers_repeat(d, request_id, m->type)) {
+    if (changes && !stops && answers_repeat(d, request_id, m->type)) {
         return;
     }
     switch (m->type) {
