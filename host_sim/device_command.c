@@ -141,6 +141,14 @@ static int open_all(host_device *h, const choices *c)
     return result;
 }
 
+static bool is_over(const struct timespec *moment)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec > moment->tv_sec ||
+           (now.tv_sec == moment->tv_sec && now.tv_nsec > moment->tv_nsec);
+}
+
 /* The device's clock follows this machine's, tick by tick; late ticks are made up for. */
 static void run(host_device *h, const choices *c)
 {
@@ -157,6 +165,7 @@ static void run(host_device *h, const choices *c)
             next.tv_nsec -= 1000000000L;
             next.tv_sec++;
         }
+        h->late = is_over(&next);
         clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
     }
 }

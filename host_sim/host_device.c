@@ -15,7 +15,7 @@ static uint32_t now_us(void *context)
 static size_t line_read_hal(void *context, uint8_t *bytes, size_t room)
 {
     host_device *h = context;
-    if (injection_now(&h->injection, INJECT_STALL, h->elapsed_s) != NULL) {
+    if (h->late || injection_now(&h->injection, INJECT_STALL, h->elapsed_s) != NULL) {
         return 0;
     }
     const size_t n = line_read(&h->line, bytes, room);

@@ -63,6 +63,7 @@ void device_init(device *d, const hal *hal, const device_config *config, const h
     memset(d, 0, sizeof *d);
     d->hal = hal;
     d->config = *config;
+    d->boot = *boot;
     d->now_us = hal->now_us(hal->context);
     link_init(&d->link, hal);
     faults_init(&d->faults);
@@ -87,7 +88,7 @@ void device_init(device *d, const hal *hal, const device_config *config, const h
     if (config->watcher.changed != NULL) {
         config->watcher.changed(config->watcher.context, &d->params.in_force, true);
     }
-    telemetry_boot(d, boot);
+    telemetry_hello(d, 0);
 }
 
 /* What can be checked without moving anything: the checksum and the solver against known answers. */

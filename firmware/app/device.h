@@ -46,6 +46,7 @@ enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 16 * 1024 };
 typedef struct {
     const hal *hal;
     device_config config;
+    hal_boot boot;
     device_link link;
     params params;
     pose_input poses;
@@ -92,10 +93,9 @@ void commands_take(device *d, const message *m, const frame *header); /* command
 void commands_end_tick(device *d);                     /* a SAVE under way, a reboot due */
 void param_commands_take(device *d, const message *m); /* param_commands.c */
 void param_commands_end_tick(device *d);
-void telemetry_boot(device *d, const hal_boot *boot); /* telemetry.c */
 void telemetry_send(device *d);
 void telemetry_stats(device *d, uint16_t request_id);
-void telemetry_hello(device *d, uint16_t request_id);
+void telemetry_hello(device *d, uint16_t request_id); /* and BOOT_REPORT */
 void telemetry_log(device *d, uint8_t level, const char *text);
 
 #endif

@@ -16,28 +16,10 @@ void telemetry_log(device *d, uint8_t level, const char *text)
     (void)link_send(&d->link, &m, d->now_us);
 }
 
-void telemetry_hello(device *d, uint16_t request_id)
+/* Why it last started, and on what settings. */
+static void send_boot_report(device *d)
 {
-    const params_set *set = &d->params.in_force;
-    message m = {.type = MESSAGE_HELLO,
-                 .hello = {.request_id = request_id,
-                           .protocol_major = PROTOCOL_MAJOR,
-                           .protocol_minor = PROTOCOL_MINOR,
-                           .layout_hash = messages_layout_hash(),
-                           .features = d->config.features,
-                           .links_max = ROD_MAX_LINKS,
-                           .links_n = (uint16_t)set->rod.links_n,
-                           .tick_max_hz = d->config.tick_max_hz,
-                           .tick_hz = 1.0f / d->config.tick_s,
-                           .angles_hz = set->device.angles_hz,
-                           .line_baud = d->config.line_baud}};
-    link_text(m.hello.device, sizeof m.hello.device, d->config.name);
-    link_text(m.hello.build, sizeof m.hello.build, d->config.build);
-    (void)link_send(&d->link, &m, d->now_us);
-}
-
-void telemetry_boot(device *d, const hal_boot *boot)
-{
+    const hal_boot *boot = &d->boot;
     static const uint8_t ORIGINS[] = {
         [SETTINGS_NONE] = ORIGIN_NEVER_SAVED,
         [SETTINGS_NEWEST] = ORIGIN_NEWEST,
@@ -58,8 +40,28 @@ void telemetry_boot(device *d, const hal_boot *boot)
             .pc = boot->pc,
             .lr = boot->lr,
             .cfsr = boot->cfsr}};
-    telemetry_hello(d, 0);
     (void)link_send(&d->link, &m, d->now_us);
+}
+
+void telemetry_hello(device *d, uint16_t request_id)
+{
+    const params_set *set = &d->params.in_force;
+    message m = {.type = MESSAGE_HELLO,
+                 .hello = {.request_id = request_id,
+                           .protocol_major = PROTOCOL_MAJOR,
+                           .protocol_minor = PROTOCOL_MINOR,
+                           .layout_hash = messages_layout_hash(),
+                           .features = d->config.features,
+                           .links_max = ROD_MAX_LINKS,
+                           .links_n = (uint16_t)set->rod.links_n,
+                           .tick_max_hz = d->config.tick_max_hz,
+                           .tick_hz = 1.0f / d->config.tick_s,
+                           .angles_hz = set->device.angles_hz,
+                           .line_baud = d->config.line_baud}};
+    link_text(m.hello.device, sizeof m.hello.device, d->config.name);
+    link_text(m.hello.build, sizeof m.hello.build, d->config.build);
+    (void)link_send(&d->link, &m, d->now_us);
+    send_boot_report(d);
 }
 
 static int16_t tenth_mrad(float angle_rad)
