@@ -225,12 +225,13 @@ static int explain(const params_text *text, const rod_refusal *why, const rod_pa
 {
     if (why->error == ROD_E_OVERDAMPED) {
         const params_entry *damper = &text->entries[index_of(rod_field_find("damper"))];
+        const double drag = (double)params->drag[why->joint];
         return sim_complain(
-            "%s: damper of joint %d is %g N m s: with its inertia and drag at %g Hz at "
-            "most %g is allowed (2 inertia / tick - drag); raise the inertia or --rate, "
-            "or damp less",
-            damper->values_n > 0 ? damper->origin : "rod", why->joint + 1, (double)why->value,
-            1.0 / (double)params->tick_s, (double)why->max);
+            "%s: drag + damper of joint %d is %g N m s: with its inertia at %g Hz at "
+            "most %g is allowed (2 inertia / tick); raise the inertia or --rate, or "
+            "damp less",
+            damper->values_n > 0 ? damper->origin : "rod", why->joint + 1,
+            drag + (double)why->value, 1.0 / (double)params->tick_s, drag + (double)why->max);
     }
     if (why->field != NULL && strcmp(why->field->name, "tick") == 0) {
         return sim_complain("--rate: a tick of %g s is out of bounds, must be %g ... %g Hz",

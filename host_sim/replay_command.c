@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "body_log.h"
 #include "options.h"
@@ -197,6 +198,23 @@ static int write_files(const choices *c, const replay *r)
     return result;
 }
 
+/* An output that is the track itself would destroy the recording. */
+static int spare_the_track(const choices *c, const char *track)
+{
+    const char *outputs[] = {c->angles_path, c->nodes_path, c->report_path, c->picture_path,
+                             c->capsule_path};
+    struct stat of_track, of_output;
+    for (size_t i = 0; i < sizeof outputs / sizeof outputs[0]; i++) {
+        if (outputs[i] != NULL && stat(track, &of_track) == 0 &&
+            stat(outputs[i], &of_output) == 0 && S_ISREG(of_track.st_mode) &&
+            of_track.st_ino == of_output.st_ino && of_track.st_dev == of_output.st_dev) {
+            return sim_complain("%s: is the track itself; name another file for the output",
+                                outputs[i]);
+        }
+    }
+    return SIM_OK;
+}
+
 static int hold_to_hash(const choices *c, uint64_t hash)
 {
     if (!c->expect || hash == c->expected_hash) {
@@ -220,6 +238,9 @@ static int replay_track(const choices *c, const char *path)
     track source;
     replay r;
     int result = params_text_resolve(&c->params, c->rate_hz, &params);
+    if (result == SIM_OK) {
+        result = spare_the_track(c, path);
+    }
     if (result == SIM_OK) {
         result = track_read(path, &c->track, &source);
     }

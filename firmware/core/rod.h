@@ -1,7 +1,7 @@
 /* rod.h - an elastic rod of N links that follows a hand: parameters in, a pose per tick in, joint
  * angles out. This is the header to include.
  *
- *     static rod foil;                              // caller-owned; about 10 KB at 64 links
+ *     static rod foil;                              // caller-owned; 6.6 KB at 64 links
  *     rod_params params;
  *     rod_preset_fill(rod_preset_find("foil"), 8, &params);
  *     rod_init(&foil, &params, NULL);               // straight and at rest
@@ -12,7 +12,8 @@
  *
  * SI units and radians. World axes right-handed; the base is the hand, its +z runs along the straight
  * rod. No heap, no globals, no I/O, no clock, no libm; float32 with one fixed order of operations, so
- * the same inputs give the same bits on every target (subnormals are kept, never flushed).
+ * the same inputs give the same bits on every target. Subnormals are kept; a rod at rest is swept clean of them
+ * within a second or two.
  *
  * Interrupts: rod_step takes the same time at every call for a given N, does not block, and may run in
  * one; a rod must not be stepped and changed at once. Errors are negative (rod_params.h); a call that
@@ -60,7 +61,7 @@ void rod_reset(rod *r);
 void rod_set_force(rod *r, rod_force_fn force, void *context);
 
 /* One tick: the base is now here. The first step after rod_init or rod_reset only takes the pose.
- * The quaternion must be of unit length to 1e-3. Errors: ROD_E_POSE, ROD_E_FORCE, ROD_E_NOT_FINITE.
+ * The quaternion must be of unit length to 1e-3: to what it is off, links are off in rod_nodes. Errors: ROD_E_POSE, ROD_E_FORCE, ROD_E_NOT_FINITE.
  * Cost on a Cortex-M4F, instructions: see README, "What it costs"; linear in N, nothing else. */
 rod_error rod_step(rod *r, const rod_pose *base);
 
