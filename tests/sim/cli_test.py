@@ -36,7 +36,7 @@ BAD_INI = {
     "number.ini": ("[rod]\nspring = soft\n", ":2: spring = soft: not a number"),
     "bounds.ini": ("[rod]\nspring = -1\n", ":2: spring = -1: out of bounds, must be 0 ... 1e+06 N m"),
     "list.ini": ("[rod]\nspring = 1 2 3\n", ":2: spring has 3 values for 4 links"),
-    "damper.ini": ("[rod]\ndamper = 401\n", ":2: damper of joint 1 is 401"),
+    "damper.ini": ("[rod]\ndamper = 401\n", ":2: drag + damper of joint 1 is 401"),
     "line.ini": ("[rod]\nlinks\n", ":2: neither a [section], a key = value nor a comment"),
     "binary.ini": (b"[rod]\n\x00\x01", ":2: not a text file"),
     "long.ini": ("[rod]\nspring = " + "1 " * 200, ":2: longer than 198 characters"),
