@@ -57,7 +57,7 @@ static void equals_its_definition_in_any_pieces(void)
 static void own_checksum_leaves_the_residue(void)
 {
     uint32_t seed = 2;
-    uint8_t bytes[104];
+    uint8_t bytes[104] = {0};
     for (size_t n = 0; n <= 100; n++) {
         random_bytes(bytes, n, BYTES_ANY, &seed);
         const uint32_t crc = crc32c(bytes, n);
