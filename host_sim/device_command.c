@@ -18,6 +18,7 @@ enum {
     OPTION_LOG,
     OPTION_FLASH,
     OPTION_LINKS,
+    OPTION_BAUD,
     OPTION_INJECT,
     OPTION_SECONDS,
     OPTION_RATE,
@@ -35,7 +36,7 @@ static const char EXAMPLES[] =
 typedef struct {
     char *pty, *tcp, *log, *flash;
     bool at_full_speed;
-    long links_n;
+    long links_n, baud;
     double seconds, rate_hz;
 } choices;
 
@@ -85,6 +86,10 @@ static int take_option(choices *c, injection *faults, int option, char *text)
     case OPTION_LINKS:
         result = take_number("--links", text, 1.0, (double)ROD_MAX_LINKS, &number);
         c->links_n = (long)number;
+        return result;
+    case OPTION_BAUD:
+        result = take_number("--baud", text, 0.0, 1e7, &number);
+        c->baud = (long)number;
         return result;
     default:
         c->at_full_speed = strcmp(text, "max") == 0;
@@ -177,6 +182,7 @@ static int run_device(const choices *c, const injection *faults)
         return sim_give_up("out of memory");
     }
     h->injection = *faults;
+    h->line_baud = (uint32_t)c->baud;
     h->line = (line){.fd = -1, .listen_fd = -1, .kept_fd = -1};
     servo_plant_init(&h->plant, 3, 15.0f);
     int result = open_all(h, c);
@@ -207,6 +213,8 @@ int sim_device_command(int argc, const char **argv)
          "keep the exact pose of every tick, and all else that bends the rod", "FILE"},
         {"flash", 0, POPT_ARG_STRING, NULL, OPTION_FLASH, "keep settings in this file", "FILE"},
         {"links", 0, POPT_ARG_STRING, NULL, OPTION_LINKS, "links of the rod (4)", "N"},
+        {"baud", 0, POPT_ARG_STRING, NULL, OPTION_BAUD,
+         "refuse rates that a line of so many baud could not carry (0: it carries all)", "BAUD"},
         {"rate", 'r', POPT_ARG_STRING, NULL, OPTION_RATE, "ticks a second (1000)", "HZ"},
         {"inject", 0, POPT_ARG_STRING, NULL, OPTION_INJECT,
          "let something go wrong: noise, drop, stall, servo, estop, cut, clock",

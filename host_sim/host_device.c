@@ -129,6 +129,7 @@ void host_device_start(host_device *h, float tick_s, int links_n)
                    .reboot = reboot};
     h->config = (device_config){.tick_s = tick_s,
                                 .tick_max_hz = 2000.0f,
+                                .line_baud = h->line_baud,
                                 .features = FEATURE_NODES | FEATURE_POSE_LOG | FEATURE_SETTINGS |
                                             FEATURE_SERVO_POSITIONS | FEATURE_SIMULATED,
                                 .name = "limber-sim",

@@ -23,7 +23,8 @@ typedef struct {
     double elapsed_s;   /* of the device's own clock, jumps left out */
     uint32_t jumped_us; /* by which injected clock jumps are ahead */
     bool rebooting;
-    bool late; /* this machine is behind: what has come in since belongs to a later tick */
+    uint32_t line_baud; /* to be believed in: 0 where the line has no rate */
+    bool late;          /* this machine is behind: what has come in since belongs to a later tick */
 } host_device;
 
 /* hal and defaults; the line, flash and log must be open (or {0}) by then. Starts the device. */

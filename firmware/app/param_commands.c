@@ -67,13 +67,38 @@ static void take_set(device *d, const message_param_set *set)
     }
 }
 
+/* ANGLES, NODES and POSE_LOG as set must leave a fifth of the line free for everything else. A byte takes
+ * ten bits; message sizes are PROTOCOL.md's. */
+static bool fits_the_line(const device *d, params_refusal *why)
+{
+    const params_set *set = &d->params.staged;
+    const float links_n = (float)set->rod.links_n;
+    const float room = 0.08f * (float)d->config.line_baud;
+    const float needed = set->device.angles_hz * (27.0f + 4.0f * links_n) +
+                         set->device.nodes_hz * (23.0f + 12.0f * (links_n + 1.0f)) +
+                         set->device.pose_log / d->config.tick_s * 53.0f;
+    if (d->config.line_baud == 0 || needed <= room) {
+        return true;
+    }
+    *why = (params_refusal){
+        REASON_LINE_RATE,
+        -1,
+        needed,
+        0.0f,
+        room,
+        "angles_rate",
+        "bytes a second: angles_rate (27 + 4 N) + nodes_rate (35 + 12 N) + pose_log; "
+        "80 % of baud / 10"};
+    return false;
+}
+
 /* What is staged is in force from this tick on, or not at all. */
 static void commit(device *d, uint16_t request_id, uint8_t type)
 {
     const bool all_allowed = supervisor_duties[d->supervisor.state].change_all;
     const params_set before = d->params.in_force;
     params_refusal why;
-    if (!params_commit(&d->params, all_allowed, &why)) {
+    if (!fits_the_line(d, &why) || !params_commit(&d->params, all_allowed, &why)) {
         answers_refuse(d, request_id, type, &why);
         return;
     }

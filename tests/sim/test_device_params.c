@@ -110,6 +110,22 @@ static void test_a_set_is_taken_whole_or_not_at_all(void)
     TEST_ASSERT_EQUAL_FLOAT(1.0f, b->host.device.params.in_force.rod.damper[2]);
 }
 
+static void test_a_rate_that_does_not_fit_the_line_is_refused_with_the_arithmetic(void)
+{
+    b->host.device.config.line_baud = 1000000;
+    set("angles_rate", 0, 1000.0f); /* 6 links: 51 bytes each, 51,000 of 80,000 a second */
+    ask_simply(MESSAGE_PARAM_COMMIT);
+    tick();
+    TEST_ASSERT_EQUAL_FLOAT(1000.0f, b->host.device.params.in_force.device.angles_hz);
+    set("nodes_rate", 0, 300.0f); /* 107 bytes each: 83,100 */
+    ask_simply(MESSAGE_PARAM_COMMIT);
+    tick();
+    const message_nack *nack = refused(REASON_LINE_RATE);
+    TEST_ASSERT_EQUAL_FLOAT(83100.0f, nack->value);
+    TEST_ASSERT_EQUAL_FLOAT(80000.0f, nack->maximum);
+    TEST_ASSERT_EQUAL_FLOAT(0.0f, b->host.device.params.in_force.device.nodes_hz);
+}
+
 static void test_what_needs_disarmed_waits_for_it(void)
 {
     sway(300, 10, 0.05f);
@@ -268,6 +284,7 @@ int main(void)
     RUN_TEST(test_every_parameter_tells_what_it_is);
     RUN_TEST(test_bad_values_are_refused_and_the_old_ones_stay);
     RUN_TEST(test_a_set_is_taken_whole_or_not_at_all);
+    RUN_TEST(test_a_rate_that_does_not_fit_the_line_is_refused_with_the_arithmetic);
     RUN_TEST(test_what_needs_disarmed_waits_for_it);
     RUN_TEST(test_requests_are_done_once);
     RUN_TEST(test_settings_outlive_a_restart);
