@@ -44,8 +44,7 @@ static void changed(void *context, const params_set *set, bool all_new)
 
 static void placed(void *context, const float *positions_rad, int servos_n)
 {
-    add(context, LOG_PLACED, (uint8_t)servos_n, positions_rad,
-        (size_t)servos_n * sizeof *positions_rad);
+    add(context, LOG_PLACED, 0, positions_rad, (size_t)servos_n * sizeof *positions_rad);
 }
 
 static uint64_t add_angles(uint64_t hash, const body *b, rod_joint *angles_rad)
@@ -152,10 +151,11 @@ static bool take_record(rerun *r, FILE *file, int kind, int detail)
     switch (kind) {
     case LOG_CHANGED:
         return fread(&r->set, sizeof r->set, 1, file) == 1 && take_change(r, detail != 0);
-    case LOG_PLACED:
-        return r->started && detail == r->body.map.servos_n &&
-               fread(positions_rad, sizeof(float), (size_t)detail, file) == (size_t)detail &&
+    case LOG_PLACED: {
+        const size_t servos_n = r->started ? (size_t)r->body.map.servos_n : 0;
+        return servos_n > 0 && fread(positions_rad, sizeof(float), servos_n, file) == servos_n &&
                body_place(&r->body, positions_rad) == SERVO_OK;
+    }
     case LOG_TICKED:
         if (!r->started || fread(&input, sizeof input, 1, file) != 1) {
             return false;

@@ -41,7 +41,8 @@ typedef struct {
     device_watcher watcher;
 } device_config;
 
-enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 16 * 1024 };
+/* Settings: 8 lists of a float a joint, 5 of one a servo, names and single values. */
+enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 72 * ROD_MAX_LINKS + 1024 };
 
 typedef struct {
     const hal *hal;

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "device_fixture.h"
+#include "saved_params.h"
 
 void setUp(void)
 {
@@ -186,6 +187,7 @@ static void restart(void)
 
 static void test_settings_outlive_a_restart(void)
 {
+    TEST_ASSERT_TRUE(saved_params_bytes_max() <= DEVICE_SETTINGS_BYTES);
     set("spring", 3, 321.0f);
     set("pose_hold", 0, 80.0f);
     ask_simply(MESSAGE_PARAM_COMMIT);
