@@ -235,5 +235,5 @@ function bindView() {
   view.addEventListener('dblclick', resetView);
   $('resetView').onclick = resetView;
   $('follow').onchange = e => setFollow(e.target.checked);
-  new ResizeObserver(resizeView).observe(view);
+  new ResizeObserver(() => { resizeView(); drawView(); }).observe(view);   // now: the next frame is too late not to flicker
 }
