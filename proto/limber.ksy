@@ -53,6 +53,9 @@ seq:
         'message_type::preset_list': preset_list
         'message_type::preset': preset
         'message_type::servo_assign': servo_assign
+        'message_type::servo_ping': servo_ping
+        'message_type::servo_set_baud': servo_set_baud
+        'message_type::servo_test': servo_test
         'message_type::ack': ack
         'message_type::nack': nack
         'message_type::param_info': param_info
@@ -60,6 +63,7 @@ seq:
         'message_type::preset_info': preset_info
         'message_type::fault': fault
         'message_type::boot_report': boot_report
+        'message_type::servo_info': servo_info
         # end cases
   - id: crc
     type: u4
@@ -555,6 +559,51 @@ types:
       - id: new_id
         type: u1
         doc: "shall answer to this from now on"
+      - id: baud
+        type: u4
+        doc: "to talk to it at; 0: that of the servo_baud parameter"
+  servo_ping:
+    doc: "asks one servo for a SERVO_INFO; to the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "chosen by the sender, not 0; the answer repeats it"
+      - id: id
+        type: u1
+        doc: "of the servo, or a PWM channel from 1"
+      - id: baud
+        type: u4
+        doc: "to talk to it at; 0: that of the servo_baud parameter"
+  servo_set_baud:
+    doc: "gives a bus servo another baud rate; to the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "chosen by the sender, not 0; the answer repeats it"
+      - id: id
+        type: u1
+        doc: "of the servo"
+      - id: baud
+        type: u4
+        doc: "to talk to it at; 0: that of the servo_baud parameter"
+      - id: new_baud
+        type: u4
+        doc: "shall talk at this from now on"
+  servo_test:
+    doc: "turns one servo a little and back; to the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "chosen by the sender, not 0; the answer repeats it"
+      - id: id
+        type: u1
+        doc: "of the servo, or a PWM channel from 1"
+      - id: baud
+        type: u4
+        doc: "to talk to it at; 0: that of the servo_baud parameter"
+      - id: turn_rad
+        type: f4
+        doc: "by so much, and back; at most 0.5 either way"
   ack:
     doc: "done; from the device"
     seq:
@@ -721,6 +770,36 @@ types:
       - id: cfsr
         type: u4
         doc: "Cortex-M's configurable fault status"
+  servo_info:
+    doc: "how a servo is; from the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "that of the SERVO_PING or SERVO_TEST"
+      - id: id
+        type: u1
+        doc: "of the servo"
+      - id: firmware
+        type: u1
+        doc: "its version"
+      - id: model
+        type: u2
+        doc: "its maker's number; 0 for a PWM channel"
+      - id: baud
+        type: u4
+        doc: "it talks at"
+      - id: hardware_error
+        type: u1
+        doc: "as it reports it: see its manual"
+      - id: position_rad
+        type: f4
+        doc: "of its shaft, 0 in the middle of its travel"
+      - id: supply_v
+        type: f4
+        doc: "volts it sees"
+      - id: temperature_c
+        type: f4
+        doc: "degrees Celsius inside"
   # end types
 enums:
   # begin enums
@@ -752,6 +831,9 @@ enums:
     0x36: preset_list
     0x37: preset
     0x38: servo_assign
+    0x39: servo_ping
+    0x3a: servo_set_baud
+    0x3b: servo_test
     0x40: ack
     0x41: nack
     0x42: param_info
@@ -759,6 +841,7 @@ enums:
     0x44: preset_info
     0x45: fault
     0x46: boot_report
+    0x47: servo_info
   device_state:
     0:
       id: boot

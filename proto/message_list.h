@@ -45,13 +45,17 @@
     MESSAGE(PRESET_LIST, preset_list, 0x36, NONE, TO_DEVICE, KEPT, "asks for a PRESET_INFO")                     \
     MESSAGE(PRESET, preset, 0x37, NONE, TO_DEVICE, KEPT, "applies a preset, through a blend")                    \
     MESSAGE(SERVO_ASSIGN, servo_assign, 0x38, NONE, TO_DEVICE, KEPT, "gives a bus servo another id")             \
+    MESSAGE(SERVO_PING, servo_ping, 0x39, NONE, TO_DEVICE, KEPT, "asks one servo for a SERVO_INFO")              \
+    MESSAGE(SERVO_SET_BAUD, servo_set_baud, 0x3A, NONE, TO_DEVICE, KEPT, "gives a bus servo another baud rate")  \
+    MESSAGE(SERVO_TEST, servo_test, 0x3B, NONE, TO_DEVICE, KEPT, "turns one servo a little and back")            \
     MESSAGE(ACK, ack, 0x40, NONE, FROM_DEVICE, KEPT, "done")                                                     \
     MESSAGE(NACK, nack, 0x41, TEXT, FROM_DEVICE, KEPT, "not done, and why")                                      \
     MESSAGE(PARAM_INFO, param_info, 0x42, TEXT, FROM_DEVICE, KEPT, "what a parameter is")                        \
     MESSAGE(PARAM_VALUE, param_value, 0x43, VALUES, FROM_DEVICE, KEPT, "what a parameter is set to")             \
     MESSAGE(PRESET_INFO, preset_info, 0x44, TEXT, FROM_DEVICE, KEPT, "what a preset is")                         \
     MESSAGE(FAULT, fault, 0x45, TEXT, FROM_DEVICE, KEPT, "the device stopped, and why")                          \
-    MESSAGE(BOOT_REPORT, boot_report, 0x46, NONE, FROM_DEVICE, KEPT, "how the device came up; follows its HELLO")
+    MESSAGE(BOOT_REPORT, boot_report, 0x46, NONE, FROM_DEVICE, KEPT, "how the device came up; follows its HELLO") \
+    MESSAGE(SERVO_INFO, servo_info, 0x47, NONE, FROM_DEVICE, KEPT, "how a servo is")
 
 #define REQUEST_ID(of, ONE) ONE(of, u16, request_id, "chosen by the sender, not 0; the answer repeats it")
 
@@ -203,7 +207,22 @@
 #define SERVO_ASSIGN_FIELDS(of, ONE, MANY, NAME)                                                                 \
     REQUEST_ID(of, ONE)                                                                                          \
     ONE(of, u8, old_id, "answers to this now; it must be the only one that does")                                \
-    ONE(of, u8, new_id, "shall answer to this from now on")
+    ONE(of, u8, new_id, "shall answer to this from now on")                                                      \
+    ONE(of, u32, baud, "to talk to it at; 0: that of the servo_baud parameter")
+#define SERVO_PING_FIELDS(of, ONE, MANY, NAME)                                                                   \
+    REQUEST_ID(of, ONE)                                                                                          \
+    ONE(of, u8, id, "of the servo, or a PWM channel from 1")                                                     \
+    ONE(of, u32, baud, "to talk to it at; 0: that of the servo_baud parameter")
+#define SERVO_SET_BAUD_FIELDS(of, ONE, MANY, NAME)                                                               \
+    REQUEST_ID(of, ONE)                                                                                          \
+    ONE(of, u8, id, "of the servo")                                                                              \
+    ONE(of, u32, baud, "to talk to it at; 0: that of the servo_baud parameter")                                  \
+    ONE(of, u32, new_baud, "shall talk at this from now on")
+#define SERVO_TEST_FIELDS(of, ONE, MANY, NAME)                                                                   \
+    REQUEST_ID(of, ONE)                                                                                          \
+    ONE(of, u8, id, "of the servo, or a PWM channel from 1")                                                     \
+    ONE(of, u32, baud, "to talk to it at; 0: that of the servo_baud parameter")                                  \
+    ONE(of, f32, turn_rad, "by so much, and back; at most 0.5 either way")
 
 #define ACK_FIELDS(of, ONE, MANY, NAME)                                                                          \
     ONE(of, u16, request_id, "that of the request")                                                              \
@@ -254,6 +273,16 @@
     ONE(of, u32, pc, "where the processor was when it faulted; this and the next two are 0 else")                \
     ONE(of, u32, lr, "where it had been called from")                                                            \
     ONE(of, u32, cfsr, "Cortex-M's configurable fault status")
+#define SERVO_INFO_FIELDS(of, ONE, MANY, NAME)                                                                   \
+    ONE(of, u16, request_id, "that of the SERVO_PING or SERVO_TEST")                                             \
+    ONE(of, u8, id, "of the servo")                                                                              \
+    ONE(of, u8, firmware, "its version")                                                                         \
+    ONE(of, u16, model, "its maker's number; 0 for a PWM channel")                                               \
+    ONE(of, u32, baud, "it talks at")                                                                            \
+    ONE(of, u8, hardware_error, "as it reports it: see its manual")                                              \
+    ONE(of, f32, position_rad, "of its shaft, 0 in the middle of its travel")                                    \
+    ONE(of, f32, supply_v, "volts it sees")                                                                      \
+    ONE(of, f32, temperature_c, "degrees Celsius inside")
 // clang-format on
 
 #endif

@@ -18,17 +18,31 @@ typedef enum {
     HAL_RESET_PIN,
     HAL_RESET_SOFTWARE,
     HAL_RESET_WATCHDOG,
-    HAL_RESET_FAULT, /* the fault handler restarted; pc, lr and cfsr tell where */
+    HAL_RESET_FAULT, /* the firmware restarted itself: `fault` says why; pc, lr and cfsr tell where */
 } hal_reset_cause;
+
+/* What the firmware had found wrong with itself before it restarted. */
+typedef enum {
+    HAL_FAULT_NONE,
+    HAL_FAULT_PROCESSOR, /* a fault exception: cfsr tells which */
+    HAL_FAULT_STACK,     /* the stack ran into its guard */
+    HAL_FAULT_WATCHDOG,  /* the main loop did not come round in time: pc is where it was */
+} hal_fault;
 
 typedef struct {
     hal_reset_cause cause;
+    hal_fault fault; /* with HAL_RESET_FAULT */
     uint32_t pc, lr, cfsr;
     uint32_t clock_hz; /* of the core, as reached */
     uint8_t
         clock_kind; /* 0 HSE through the PLL, 1 HSI through the PLL, 2 HSI, 3 emulator, 4 host */
     bool estop_ignored; /* no such pin here (emulator, host) */
 } hal_boot;
+
+enum {
+    HAL_PWM_CHANNELS_N = 8,
+    HAL_BUS_PACKET_MAX_BYTES = 832, /* goals of 128 servos, every third byte stuffed */
+};
 
 /* Two flash sectors for settings. Erased bytes read 0xFF; a write may only clear bits. */
 enum { HAL_FLASH_SECTORS_N = 2 };
@@ -48,14 +62,26 @@ typedef struct {
     uint32_t (*line_overruns)(void *context);
     uint32_t (*line_framing_errors)(void *context);
 
-    /* Servos, in radians of the joint's servo shaft, servo 0 ... servos_n - 1 (theta_1, phi_1, theta_2 ...).
-     * Power: cuts or gives supply and torque; cutting aborts any transfer under way. Write: new goals, all at
-     * once. Read: the present positions where the servos tell (returns false where they cannot: hobby PWM).
-     * Healthy: false once a servo has reported an error or does not answer. */
-    void (*servo_power)(void *context, bool on);
-    void (*servo_write)(void *context, const float *goals_rad, int servos_n);
-    bool (*servo_read)(void *context, float *positions_rad, int servos_n);
-    bool (*servo_healthy)(void *context);
+    /* The supply of all servos, one switch. Off at start. */
+    void (*servo_supply)(void *context, bool on);
+
+    /* Hobby servos, channels 0 ... HAL_PWM_CHANNELS_N - 1. Start: pulses at this rate from now on, none on any
+     * channel yet; false where it cannot be made. Pulse: its width from the next period on, 0: none. Stop: no
+     * pulse on any channel, at once. */
+    bool (*pwm_start)(void *context, float rate_hz);
+    void (*pwm_pulse)(void *context, int channel, uint32_t width_us);
+    void (*pwm_stop)(void *context);
+
+    /* The servo bus: one wire, half duplex, 8N1. Start: at this rate from now on, nothing under way; false where the
+     * clock cannot make it within 1 %. Write: takes the whole packet and sends it by itself, or nothing while one is
+     * under way (or it is longer than HAL_BUS_PACKET_MAX_BYTES). Sending: until the last stop bit is out.
+     * Read: bytes that have come; whether the packet's own echo is among them depends on the wiring. Abort: ends what
+     * is under way within a byte and forgets what has come. */
+    bool (*bus_start)(void *context, uint32_t baud);
+    bool (*bus_write)(void *context, const uint8_t *bytes, size_t bytes_n);
+    bool (*bus_sending)(void *context);
+    size_t (*bus_read)(void *context, uint8_t *bytes, size_t room);
+    void (*bus_abort)(void *context);
 
     /* The e-stop input: true means stop. */
     bool (*estop_pressed)(void *context);
@@ -67,6 +93,9 @@ typedef struct {
     bool (*flash_write)(void *context, int sector, uint32_t offset, const void *bytes,
                         size_t bytes_n);
     bool (*flash_erase)(void *context, int sector);
+
+    /* False once the stack has grown over its end: nothing is to be trusted from then on. */
+    bool (*stack_intact)(void *context);
 
     /* Once a tick, by the main loop, and only if all of it checked in. */
     void (*watchdog_feed)(void *context);
