@@ -41,7 +41,7 @@ typedef struct {
 
 enum {
     HAL_PWM_CHANNELS_N = 8,
-    HAL_BUS_PACKET_MAX_BYTES = 832, /* goals of 128 servos, every third byte stuffed */
+    HAL_BUS_PACKET_MAX_BYTES = 880, /* goals of 128 servos, and a stuffed byte after every third */
 };
 
 /* Two flash sectors for settings. Erased bytes read 0xFF; a write may only clear bits. */
