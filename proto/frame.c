@@ -1,80 +1,61 @@
 /* frame.c - see frame.h. */
 #include "frame.h"
 
+#include <string.h>
+
 #include "crc32c.h"
 
 /* COBS: a body is cut at its zeros and every 254 other bytes. Each block is sent as its length plus one,
  * the code, and its bytes; a code below FULL_BLOCK stands for a zero after the block, save the last. */
 enum { FULL_BLOCK = 0xFF };
 
-typedef struct {
-    uint8_t *code; /* where the open block's code will be written */
-    uint8_t *next;
-    uint32_t crc;
-    bool after_full; /* a full block was closed: a new one opens only if a byte follows */
-} encoder;
-
-static void open_block(encoder *e)
-{
-    e->code = e->next++;
-    e->after_full = false;
-}
-
-static void close_block(encoder *e)
-{
-    *e->code = (uint8_t)(e->next - e->code);
-}
-
-static void encode_byte(encoder *e, uint8_t byte)
-{
-    if (e->after_full) {
-        open_block(e);
-    }
-    if (byte == 0) {
-        close_block(e);
-        open_block(e);
-        return;
-    }
-    *e->next++ = byte;
-    if (e->next - e->code == FULL_BLOCK) {
-        close_block(e);
-        e->after_full = true;
-    }
-}
-
-static void encode(encoder *e, const uint8_t *bytes, size_t bytes_n)
-{
-    for (size_t i = 0; i < bytes_n; i++) {
-        e->crc = crc32c_add_byte(e->crc, bytes[i]);
-        encode_byte(e, bytes[i]);
-    }
-}
-
-static void encode_little_endian(encoder *e, uint32_t value, int bytes_n)
+static void put_little_endian(uint8_t *to, uint32_t value, int bytes_n)
 {
     for (int i = 0; i < bytes_n; i++) {
-        const uint8_t byte = (uint8_t)(value >> (8 * i));
-        encode(e, &byte, 1);
+        to[i] = (uint8_t)(value >> (8 * i));
     }
+}
+
+/* Returns the end of what was written. The last block is closed without a zero after it. */
+static uint8_t *stuff(const uint8_t *body, size_t body_n, uint8_t *wire)
+{
+    uint8_t *code = wire, *next = wire + 1;
+    for (size_t i = 0; i < body_n; i++) {
+        if (next - code == FULL_BLOCK) { /* a new block only because a byte follows */
+            *code = FULL_BLOCK;
+            code = next++;
+        }
+        const uint8_t byte = body[i];
+        if (byte != 0) {
+            *next++ = byte;
+        } else {
+            *code = (uint8_t)(next - code);
+            code = next++;
+        }
+    }
+    *code = (uint8_t)(next - code);
+    return next;
 }
 
 size_t frame_encode(const frame *f, uint8_t *wire, size_t room)
 {
+    uint8_t body[FRAME_BODY_MAX];
     if (f->payload_n > FRAME_PAYLOAD_MAX || room < FRAME_WIRE_BYTES(f->payload_n)) {
         return 0;
     }
-    encoder e = {.next = wire, .crc = CRC32C_START};
-    *e.next++ = 0;
-    open_block(&e);
-    encode_little_endian(&e, f->type, 1);
-    encode_little_endian(&e, f->session, 1);
-    encode_little_endian(&e, f->seq, 2);
-    encode_little_endian(&e, f->t_us, 4);
-    encode(&e, f->payload, f->payload_n);
-    encode_little_endian(&e, crc32c_finish(e.crc), FRAME_CRC_BYTES);
-    close_block(&e);
-    *e.next++ = 0;
-    return (size_t)(e.next - wire);
+    const size_t before_crc_n = FRAME_HEADER_BYTES + f->payload_n;
+    body[0] = f->type;
+    body[1] = f->session;
+    put_little_endian(body + 2, f->seq, 2);
+    put_little_endian(body + 4, f->t_us, 4);
+    if (f->payload_n > 0) {
+        memcpy(body + FRAME_HEADER_BYTES, f->payload, f->payload_n);
+    }
+    put_little_endian(body + before_crc_n, crc32c(body, before_crc_n), FRAME_CRC_BYTES);
+    wire[0] = 0;
+    uint8_t *end = stuff(body, before_crc_n + FRAME_CRC_BYTES, wire + 1);
+    *end++ = 0;
+    return (size_t)(end - wire);
 }
 
 void frame_decoder_restart(frame_decoder *decoder)

@@ -775,7 +775,7 @@ types:
     seq:
       - id: request_id
         type: u2
-        doc: "that of the SERVO_PING or SERVO_TEST"
+        doc: "that of the SERVO_PING"
       - id: id
         type: u1
         doc: "of the servo"

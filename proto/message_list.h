@@ -274,7 +274,7 @@
     ONE(of, u32, lr, "where it had been called from")                                                            \
     ONE(of, u32, cfsr, "Cortex-M's configurable fault status")
 #define SERVO_INFO_FIELDS(of, ONE, MANY, NAME)                                                                   \
-    ONE(of, u16, request_id, "that of the SERVO_PING or SERVO_TEST")                                             \
+    ONE(of, u16, request_id, "that of the SERVO_PING")                                                           \
     ONE(of, u8, id, "of the servo")                                                                              \
     ONE(of, u8, firmware, "its version")                                                                         \
     ONE(of, u16, model, "its maker's number; 0 for a PWM channel")                                               \

@@ -16,7 +16,7 @@ const char *messages_error_text(messages_error error)
                                                                      : "unknown error";
 }
 
-/* --- numbers, whatever the machine's byte order --------------------------------------------------- */
+/* --- numbers and names ---------------------------------------------------------------------------- */
 
 static size_t width_bytes(uint8_t type)
 {
@@ -32,45 +32,8 @@ static size_t width_bytes(uint8_t type)
     }
 }
 
-/* Signed numbers and floats go by their bits, so the width says all. */
-static void put_numbers(uint8_t *to, const void *from, size_t n, size_t width)
-{
-    const uint8_t *source = from;
-    for (size_t i = 0; i < n; i++, to += width, source += width) {
-        if (width == 1) {
-            *to = *source;
-        } else if (width == 2) {
-            uint16_t bits;
-            memcpy(&bits, source, sizeof bits);
-            to[0] = (uint8_t)bits;
-            to[1] = (uint8_t)(bits >> 8);
-        } else {
-            uint32_t bits;
-            memcpy(&bits, source, sizeof bits);
-            to[0] = (uint8_t)bits;
-            to[1] = (uint8_t)(bits >> 8);
-            to[2] = (uint8_t)(bits >> 16);
-            to[3] = (uint8_t)(bits >> 24);
-        }
-    }
-}
-
-static void get_numbers(void *to, const uint8_t *from, size_t n, size_t width)
-{
-    uint8_t *target = to;
-    for (size_t i = 0; i < n; i++, target += width, from += width) {
-        if (width == 1) {
-            *target = *from;
-        } else if (width == 2) {
-            const uint16_t bits = (uint16_t)(from[0] | from[1] << 8);
-            memcpy(target, &bits, sizeof bits);
-        } else {
-            const uint32_t bits = (uint32_t)from[0] | (uint32_t)from[1] << 8 |
-                                  (uint32_t)from[2] << 16 | (uint32_t)from[3] << 24;
-            memcpy(target, &bits, sizeof bits);
-        }
-    }
-}
+/* Numbers go as they lie in memory: signed ones and floats by their bits, low byte first. */
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "the wire's byte order is the machine's");
 
 static size_t text_length(const char *text, size_t max)
 {
@@ -124,7 +87,7 @@ messages_error messages_unpack(const frame *f, message *out)
         if (field->type == WIRE_NAME) {
             get_name(base + field->offset, from, field->n, field->n);
         } else {
-            get_numbers(base + field->offset, from, field->n, width);
+            memcpy(base + field->offset, from, field->n * width);
         }
         from += field->n * width;
     }
@@ -132,9 +95,8 @@ messages_error messages_unpack(const frame *f, message *out)
         get_name(base + tail->offset, from, tail_n, tail->max);
     } else if (tail->max > 0) {
         const uint16_t count = (uint16_t)tail_n;
-        const size_t width = width_bytes(tail->type);
         memcpy(base + tail->count_offset, &count, sizeof count);
-        get_numbers(base + tail->offset, from, tail_bytes / width, width);
+        memcpy(base + tail->offset, from, tail_bytes);
     }
     return MESSAGES_OK;
 }
@@ -177,12 +139,11 @@ int messages_pack(const message *m, uint8_t *payload, size_t room)
         if (field->type == WIRE_NAME) {
             put_name(to, base + field->offset, field->n);
         } else {
-            put_numbers(to, base + field->offset, field->n, width);
+            memcpy(to, base + field->offset, field->n * width);
         }
         to += field->n * width;
     }
-    const size_t width = width_bytes(tail->type);
-    put_numbers(to, base + tail->offset, tail_bytes / width, width);
+    memcpy(to, base + tail->offset, tail_bytes);
     return (int)(info->fixed_bytes + tail_bytes);
 }
 

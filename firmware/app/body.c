@@ -3,58 +3,15 @@
 
 #include <string.h>
 
-/* Servo 2i turns theta of joint i, servo 2i + 1 its phi. */
-static void describe_servos(const params_set *set, servo_config *configs)
-{
-    const device_params *d = &set->device;
-    for (int servo = 0; servo < 2 * set->rod.links_n; servo++) {
-        configs[servo] = (servo_config){
-            .id = (uint16_t)d->servo_id[servo],
-            .joint = (uint8_t)(servo / 2),
-            .axis = (uint8_t)(servo % 2),
-            .sign = d->servo_sign[servo] < 0.0f ? -1 : 1,
-            .offset_rad = d->servo_offset_rad[servo],
-            .min_rad = d->servo_offset_rad[servo] + d->servo_min_rad[servo],
-            .max_rad = d->servo_offset_rad[servo] + d->servo_max_rad[servo],
-            .rate_rad_s = d->servo_rate_radps,
-            .accel_rad_s2 = d->servo_acceleration_radps2,
-        };
-    }
-}
+#include "servo_setup.h"
 
-/* The servos are served on whole ticks: at the asked rate or the next lower one that fits. */
-static int period_ticks(const params_set *set)
+/* Goals start straight and at rest: only without torque. */
+static void lay_servos(body *b, const servo_setup *setup)
 {
-    const float ticks = 1.0f / (set->device.servo_hz * set->rod.tick_s);
-    const int whole = (int)(ticks + 0.999f);
-    return whole > 1 ? whole : 1;
-}
-
-static bool prepare_servos(body *b, const params_set *set, params_refusal *why)
-{
-    servo_config configs[SERVOS_MAX];
-    servo_refusal refusal;
-    describe_servos(set, configs);
-    const int ticks = period_ticks(set);
-    const servo_error error = servo_map_init(&b->map, configs, 2 * set->rod.links_n,
-                                             (float)ticks * set->rod.tick_s, &refusal);
-    if (error != SERVO_OK) {
-        *why = (params_refusal){REASON_COMBINATION,
-                                refusal.servo,
-                                refusal.value,
-                                refusal.min,
-                                refusal.max,
-                                error == SERVO_E_ID       ? "servo_id"
-                                : error == SERVO_E_OFFSET ? "servo_offset"
-                                : error == SERVO_E_RANGE  ? "servo_min"
-                                                          : "servo_rate",
-                                servo_error_text(error)};
-        return false;
-    }
-    b->servo_period_ticks = ticks;
+    (void)servo_map_init(&b->map, setup->map, setup->servos_n, setup->period_s, NULL);
+    b->servo_period_ticks = setup->period_ticks;
     b->ticks_to_servos = 0;
     servo_blend_none(&b->blend);
-    return true;
 }
 
 static bool refuse_rod(rod_error error, const rod_refusal *refusal, params_refusal *why)
@@ -74,26 +31,32 @@ bool body_init(body *b, const params_set *set, params_refusal *why)
     if (error != ROD_OK) {
         return refuse_rod(error, &refusal, why);
     }
+    servo_setup setup;
+    if (!servo_setup_make(&setup, set, why)) {
+        return false;
+    }
+    lay_servos(b, &setup);
     b->blend_s = set->device.blend_s;
     b->finite = true;
     b->follow = FOLLOW_NOTHING;
-    return prepare_servos(b, set, why);
+    return true;
 }
 
 bool body_change(body *b, const params_set *set, bool all_new, params_refusal *why)
 {
+    servo_setup setup;
     rod_refusal refusal;
-    const rod_params before = *rod_params_of(&b->rod);
+    if (all_new && !servo_setup_make(&setup, set, why)) {
+        return false;
+    }
     const rod_error error = rod_set_params(&b->rod, &set->rod, &refusal);
     if (error != ROD_OK) {
         return refuse_rod(error, &refusal, why);
     }
-    if (all_new && !prepare_servos(b, set, why)) {
-        (void)rod_set_params(&b->rod, &before, NULL);
-        return false;
-    }
     b->blend_s = set->device.blend_s;
-    if (!all_new && b->follow == FOLLOW_ROD) {
+    if (all_new) {
+        lay_servos(b, &setup);
+    } else if (b->follow == FOLLOW_ROD) {
         float targets_rad[SERVOS_MAX];
         servo_map_targets(&b->map, rod_angles(&b->rod), set->rod.links_n, targets_rad);
         servo_blend_from_motion(&b->blend, &b->map, targets_rad, (uint32_t)(b->blend_s * 1e6f));

@@ -66,8 +66,9 @@ static void take_pose(device *d, const message_pose *pose, const frame *header)
 
 static void take_arm(device *d, uint16_t request_id)
 {
-    if (d->save_request != 0) {
-        answers_refuse_for(d, request_id, MESSAGE_ARM, REASON_BUSY, "a SAVE is under way");
+    if (d->saving.id != 0 || d->servicing.id != 0 || d->arming.id != 0) {
+        answers_refuse_for(d, request_id, MESSAGE_ARM, REASON_BUSY,
+                           "a SAVE, an ARM or a request to a servo is under way");
         return;
     }
     const pose_stream stream = pose_input_stream(&d->poses);
@@ -94,8 +95,7 @@ static void take_arm(device *d, uint16_t request_id)
         answers_refuse_for(d, request_id, MESSAGE_ARM, reason, no);
         return;
     }
-    d->arm = true;
-    answers_acknowledge(d, request_id, MESSAGE_ARM);
+    arming_begin(d, request_id); /* answered when the servos have torque, or cannot have it */
 }
 
 static void take_clear(device *d, uint16_t request_id)
@@ -122,12 +122,25 @@ static bool in_session(const device *d, const message *m, const frame *header)
     return memchr(FROM_ANYWHERE, m->type, sizeof FROM_ANYWHERE) != NULL;
 }
 
+/* A request that was sent again because its answer takes a while: that will come. */
+static bool is_under_way(device *d, uint16_t request_id, uint8_t type)
+{
+    const device_request *all[] = {&d->saving, &d->arming, &d->servicing};
+    for (int i = 0; i < 3; i++) {
+        if (request_id != 0 && all[i]->id == request_id && all[i]->type == type) {
+            d->commands_repeated++;
+            return true;
+        }
+    }
+    return false;
+}
+
 void commands_take(device *d, const message *m, const frame *header)
 {
     /* every request begins with its id */
     const uint16_t request_id = m->arm.request_id;
     const bool stops = m->type == MESSAGE_DISARM || m->type == MESSAGE_ESTOP; /* every time */
-    const bool changes = m->type >= MESSAGE_ARM && m->type <= MESSAGE_SERVO_ASSIGN &&
+    const bool changes = m->type >= MESSAGE_ARM && m->type <= MESSAGE_SERVO_TEST &&
                          m->type != MESSAGE_PARAM_LIST && m->type != MESSAGE_PARAM_GET &&
                          m->type != MESSAGE_PRESET_LIST;
     if (!in_session(d, m, header)) {
@@ -136,7 +149,8 @@ void commands_take(device *d, const message *m, const frame *header)
         }
         return;
     }
-    if (changes && !stops && answers_repeat(d, request_id, m->type)) {
+    if (changes && !stops &&
+        (is_under_way(d, request_id, m->type) || answers_repeat(d, request_id, m->type))) {
         return;
     }
     switch (m->type) {
@@ -187,8 +201,13 @@ void commands_take(device *d, const message *m, const frame *header)
     case MESSAGE_PARAM_DEFAULTS:
     case MESSAGE_PRESET_LIST:
     case MESSAGE_PRESET:
-    case MESSAGE_SERVO_ASSIGN:
         param_commands_take(d, m);
+        break;
+    case MESSAGE_SERVO_ASSIGN:
+    case MESSAGE_SERVO_PING:
+    case MESSAGE_SERVO_SET_BAUD:
+    case MESSAGE_SERVO_TEST:
+        servo_commands_take(d, m);
         break;
     default: /* of a kind that only the device sends */
         d->link.counts.unknown++;
@@ -199,9 +218,10 @@ void commands_take(device *d, const message *m, const frame *header)
 void commands_end_tick(device *d)
 {
     param_commands_end_tick(d);
+    servo_commands_end_tick(d);
     if (d->reboot != 0 && d->link.queue_n == 0 &&
         d->hal->line_free(d->hal->context) == d->link.line_room) { /* the answer is out */
-        d->hal->servo_power(d->hal->context, false);
+        servos_off(&d->servos);
         d->hal->reboot(d->hal->context);
     }
 }

@@ -5,10 +5,10 @@
 
 #include "crc32c.h"
 #include "saved_params.h"
+#include "servo_setup.h"
 
-static pose_input_params pose_params(const device *d)
+static pose_input_params pose_params(const device_params *p)
 {
-    const device_params *p = &d->params.in_force.device;
     pose_input_params params = pose_input_defaults();
     params.mode = p->pose_mode > 0.5f ? POSE_INTERPOLATE : POSE_PREDICT;
     params.hold_us = (uint32_t)(p->pose_hold_ms * 1000.0f);
@@ -17,17 +17,27 @@ static pose_input_params pose_params(const device *d)
     return params;
 }
 
-bool device_apply_params(device *d, bool all_new, params_refusal *why)
+static void configure_servos(device *d, const params_set *set)
 {
-    if (!body_change(&d->body, &d->params.in_force, all_new, why)) {
+    servos_config config;
+    servo_setup_hardware(set, &config);
+    servos_configure(&d->servos, d->hal, &config);
+}
+
+bool device_apply_params(device *d, const params_set *set, bool all_new, params_refusal *why)
+{
+    if (!body_change(&d->body, set, all_new, why)) {
         return false;
     }
-    const pose_input_params poses = pose_params(d);
+    if (all_new) {
+        configure_servos(d, set);
+    }
+    const pose_input_params poses = pose_params(&set->device);
     (void)pose_input_set(&d->poses, &poses);
     d->input.new_params = true;
     d->to_angles_ticks = d->to_nodes_ticks = 0;
     if (d->config.watcher.changed != NULL) {
-        d->config.watcher.changed(d->config.watcher.context, &d->params.in_force, all_new);
+        d->config.watcher.changed(d->config.watcher.context, set, all_new);
     }
     return true;
 }
@@ -58,6 +68,34 @@ static void load_settings(device *d)
     }
 }
 
+/* The table's defaults, but for what this device was built with. */
+static void default_params(device *d)
+{
+    params_init(&d->params);
+    d->params.in_force.rod.tick_s = d->config.tick_s;
+    d->params.in_force.rod.links_n = d->config.links_n;
+    d->params.in_force.device.servo_kind = (float)d->config.servos_kind;
+    d->params.staged = d->params.in_force;
+}
+
+/* Whatever made the firmware restart itself is a fault now: somebody must have seen it before the servos get torque
+ * again. */
+static void raise_boot_faults(device *d)
+{
+    const hal_boot *boot = &d->boot;
+    if (boot->cause == HAL_RESET_WATCHDOG) {
+        faults_raise(&d->faults, FAULT_WATCHDOG);
+    }
+    if (boot->cause == HAL_RESET_FAULT) {
+        faults_raise(&d->faults, boot->fault == HAL_FAULT_STACK      ? FAULT_CANARY
+                                 : boot->fault == HAL_FAULT_WATCHDOG ? FAULT_WATCHDOG
+                                                                     : FAULT_PROCESSOR);
+    }
+    if (boot->clock_kind == CLOCK_INTERNAL) {
+        faults_raise(&d->faults, FAULT_CLOCK);
+    }
+}
+
 void device_init(device *d, const hal *hal, const device_config *config, const hal_boot *boot)
 {
     memset(d, 0, sizeof *d);
@@ -68,22 +106,18 @@ void device_init(device *d, const hal *hal, const device_config *config, const h
     link_init(&d->link, hal);
     faults_init(&d->faults);
     supervisor_init(&d->supervisor);
-    params_init(&d->params);
-    d->params.in_force.rod.tick_s = config->tick_s;
-    d->params.in_force.rod.links_n = config->links_n;
-    d->params.staged = d->params.in_force;
+    raise_boot_faults(d);
+    default_params(d);
     load_settings(d);
     params_refusal why;
     if (!body_init(&d->body, &d->params.in_force, &why)) {
         /* each part of the saved set was fit, all together are not: the defaults are */
         faults_raise(&d->faults, FAULT_SETTINGS);
-        params_init(&d->params);
-        d->params.in_force.rod.tick_s = config->tick_s;
-        d->params.in_force.rod.links_n = config->links_n;
-        d->params.staged = d->params.in_force;
+        default_params(d);
         (void)body_init(&d->body, &d->params.in_force, &why);
     }
-    const pose_input_params poses = pose_params(d);
+    configure_servos(d, &d->params.in_force);
+    const pose_input_params poses = pose_params(&d->params.in_force.device);
     (void)pose_input_init(&d->poses, &poses, d->now_us);
     if (config->watcher.changed != NULL) {
         config->watcher.changed(config->watcher.context, &d->params.in_force, true);
@@ -120,6 +154,7 @@ static void receive(device *d)
     while (link_receive(&d->link, &m, &header)) {
         commands_take(d, &m, &header);
     }
+    d->checked_in = CHECKED_RECEIVE;
 }
 
 static uint32_t conditions(const device *d)
@@ -134,25 +169,40 @@ static uint32_t conditions(const device *d)
            (stream.state == POSE_STREAM_GOOD ? WHEN_POSES : 0u) | (relaxed ? WHEN_RELAXED : 0u);
 }
 
-/* Before the servos get torque: their goals are where they are. Hobby servos cannot tell; theirs are
- * straight, and the first move is theirs alone (README, safety table). */
-static void place_servos(device *d)
+/* What entering a new state asks for. */
+static void change_state(device *d, supervisor_state before, const supervisor_rule *rule)
 {
-    float positions_rad[SERVOS_MAX];
-    if (!d->hal->servo_read(d->hal->context, positions_rad, d->body.map.servos_n)) {
-        return;
+    const supervisor_state state = d->supervisor.state;
+    d->blend_due_us = rule->blend_us;
+    d->holds += state == SUPERVISOR_HOLD;
+    if (before >= SUPERVISOR_FAULT && state == SUPERVISOR_DISARMED) {
+        faults_clear(&d->faults);
+        d->fault_seen = 0;
     }
-    if (body_place(&d->body, positions_rad) != SERVO_OK) {
-        faults_raise(&d->faults, FAULT_SERVO_MAP);
-        return;
+    if (supervisor_duties[state].servo_power) {
+        servos_torque(&d->servos, body_goals(&d->body), d->now_us);
+    } else {
+        servos_off(&d->servos);
     }
-    d->input.placed = true;
-    if (d->config.watcher.placed != NULL) {
-        d->config.watcher.placed(d->config.watcher.context, positions_rad, d->body.map.servos_n);
-    }
+    telemetry_log(d, state >= SUPERVISOR_FAULT ? LEVEL_ERROR : LEVEL_INFO, rule->why);
 }
 
-/* One step of the states, and what entering a new one asks for. */
+/* What the body follows in this tick. Torque comes to a bus of servos in several packets: until the last of them is
+ * in force the goals stand still where the servos are, and only then does the state's time begin, with its blend. */
+static void choose_follow(device *d)
+{
+    const bool moves = supervisor_duties[d->supervisor.state].servo_power;
+    d->input.follow = (uint8_t)supervisor_duties[d->supervisor.state].follow;
+    if (moves && !servos_started(&d->servos)) {
+        d->input.follow = FOLLOW_HOLD;
+        supervisor_start_over(&d->supervisor);
+        return;
+    }
+    d->input.blend_us = d->blend_due_us;
+    d->blend_due_us = 0;
+}
+
+/* One step of the states. */
 static void supervise(device *d)
 {
     const supervisor_duty *before = &supervisor_duties[d->supervisor.state];
@@ -160,31 +210,20 @@ static void supervise(device *d)
         d->self_test_passed = self_test();
         faults_set(&d->faults, FAULT_SELF_TEST, !d->self_test_passed);
     }
-    faults_set(&d->faults, FAULT_SERVO, !d->hal->servo_healthy(d->hal->context));
+    faults_set(&d->faults, FAULT_SERVO, !servos_healthy(&d->servos));
+    if (d->disarm) {
+        servos_off(&d->servos); /* in whatever state: one that is being tested or looked for, too */
+    }
+    arming_before_states(d);
     const supervisor_state state = d->supervisor.state;
     const supervisor_rule *rule = supervisor_step(&d->supervisor, conditions(d), d->now_us);
-    const supervisor_duty *duty = &supervisor_duties[d->supervisor.state];
+    if (rule != NULL) {
+        change_state(d, state, rule);
+    }
+    arming_after_states(d);
     d->arm = d->disarm = d->clear = d->estop = false;
-    d->input.follow = (uint8_t)duty->follow;
-    if (rule == NULL) {
-        return;
-    }
-    d->input.blend_us = rule->blend_us;
-    d->holds += d->supervisor.state == SUPERVISOR_HOLD;
-    if (state == SUPERVISOR_FAULT || state == SUPERVISOR_ESTOP) {
-        if (d->supervisor.state == SUPERVISOR_DISARMED) {
-            faults_clear(&d->faults);
-            d->fault_seen = 0;
-        }
-    }
-    if (duty->servo_power && !before->servo_power) {
-        place_servos(d);
-        d->hal->servo_write(d->hal->context, body_goals(&d->body), d->body.map.servos_n);
-    }
-    if (duty->servo_power != before->servo_power) {
-        d->hal->servo_power(d->hal->context, duty->servo_power);
-    }
-    telemetry_log(d, d->supervisor.state >= SUPERVISOR_FAULT ? LEVEL_ERROR : LEVEL_INFO, rule->why);
+    choose_follow(d);
+    d->checked_in |= CHECKED_STATES;
 }
 
 static void move(device *d)
@@ -195,8 +234,10 @@ static void move(device *d)
     body_tick(&d->body, &d->input);
     faults_solver(&d->faults, d->body.finite);
     if (d->body.goals_new && d->input.follow != FOLLOW_NOTHING) {
-        d->hal->servo_write(d->hal->context, body_goals(&d->body), d->body.map.servos_n);
+        servos_goals(&d->servos, body_goals(&d->body));
     }
+    servos_tick(&d->servos, d->now_us);
+    d->checked_in |= CHECKED_SERVOS;
     for (int i = 0; i < SERVO_LIMITERS_N; i++) {
         d->limited_ticks[i] += d->body.goals_new && (d->body.limited & 1u << i) != 0;
     }
@@ -215,7 +256,21 @@ static void check_time(device *d)
     if ((float)taken_us > d->config.tick_s * 1e6f) {
         d->deadline_misses++;
         faults_raise(&d->faults, FAULT_DEADLINE);
+    } else {
+        d->checked_in |= CHECKED_DEADLINE;
     }
+}
+
+/* What did not come round is not covered up: unfed, the hardware restarts the board. */
+static void feed_watchdog(device *d)
+{
+    const bool intact = d->hal->stack_intact(d->hal->context);
+    faults_set(&d->faults, FAULT_CANARY, !intact);
+    d->checked_in |= intact ? CHECKED_STACK : 0;
+    if (d->checked_in == CHECKED_ALL) {
+        d->hal->watchdog_feed(d->hal->context);
+    }
+    d->checked_in = 0;
 }
 
 void device_tick(device *d)
@@ -236,6 +291,6 @@ void device_tick(device *d)
     commands_end_tick(d);
     telemetry_send(d);
     check_time(d);
-    d->hal->watchdog_feed(d->hal->context);
+    feed_watchdog(d);
     d->tick++;
 }

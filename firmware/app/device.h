@@ -18,6 +18,7 @@
 #include "link.h"
 #include "params.h"
 #include "pose_input.h"
+#include "servos.h"
 #include "settings.h"
 #include "supervisor.h"
 
@@ -31,18 +32,35 @@ typedef struct {
 } device_watcher;
 
 typedef struct {
-    float tick_s;       /* what device_tick is called with */
-    float tick_max_hz;  /* the fastest that this hardware could do, for HELLO */
-    uint32_t line_baud; /* 0: the line has no rate */
-    uint32_t features;  /* FEATURE_... */
-    const char *name;   /* at most 16 bytes: "limber-sim" */
-    const char *build;  /* at most 24 bytes: version and commit */
-    int links_n;        /* of the rod in the hand, unless settings say otherwise */
+    float tick_s;        /* what device_tick is called with */
+    float tick_max_hz;   /* the fastest that this hardware could do, for HELLO */
+    uint32_t line_baud;  /* 0: the line has no rate */
+    uint32_t features;   /* FEATURE_... */
+    const char *name;    /* at most 16 bytes: "limber-sim" */
+    const char *build;   /* at most 24 bytes: version and commit */
+    int links_n;         /* of the rod in the hand, unless settings say otherwise */
+    uint8_t servos_kind; /* what hangs on it: servos_kind, likewise */
     device_watcher watcher;
 } device_config;
 
 /* Settings: 8 lists of a float a joint, 5 of one a servo, names and single values. */
 enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 72 * ROD_MAX_LINKS + 1024 };
+
+/* Parts of the tick that must have come round before the watchdog is fed. */
+enum {
+    CHECKED_RECEIVE = 1 << 0,
+    CHECKED_STATES = 1 << 1,
+    CHECKED_SERVOS = 1 << 2,
+    CHECKED_STACK = 1 << 3,
+    CHECKED_DEADLINE = 1 << 4,
+    CHECKED_ALL = (1 << 5) - 1,
+};
+
+/* A request that takes more than a tick: its answer comes when it is done, and asking again changes nothing. */
+typedef struct {
+    uint16_t id; /* 0: none is under way */
+    uint8_t type;
+} device_request;
 
 typedef struct {
     const hal *hal;
@@ -54,16 +72,19 @@ typedef struct {
     supervisor supervisor;
     fault_log faults;
     settings settings;
+    servos servos;
     body body;
     body_input input; /* of this tick */
 
+    uint32_t blend_due_us; /* once the servos have torque */
     uint32_t now_us, tick;
     uint32_t uptime_ms, uptime_rest_us;
     bool arm, disarm, clear, estop; /* asked for in this tick */
     bool self_test_passed;
-    uint8_t reboot;        /* 1 + REBOOT_..., once the answer is out; 0: not asked */
-    uint16_t save_request; /* the SAVE under way; 0: none */
+    uint8_t reboot; /* 1 + REBOOT_..., once the answer is out; 0: not asked */
+    device_request saving, arming, servicing; /* SAVE; ARM; SERVO_... */
     bool unsaved;
+    uint8_t checked_in; /* CHECKED_... of this tick */
     message_nack
         answers[DEVICE_ANSWERS_KEPT_N]; /* to requests that change something, for when they are
                                                     asked again; reason 0: it was an ACK */
@@ -88,15 +109,22 @@ void device_init(device *d, const hal *hal, const device_config *config, const h
 void device_tick(device *d);
 
 /* The pieces of it, in files of their own. */
-bool device_apply_params(device *d, bool all_new,
-                         params_refusal *why); /* what is in force, to all parts */
+bool device_apply_params(device *d, const params_set *set, bool all_new,
+                         params_refusal *why);                        /* to all parts, or to none */
 void commands_take(device *d, const message *m, const frame *header); /* commands.c */
 void commands_end_tick(device *d);                     /* a SAVE under way, a reboot due */
 void param_commands_take(device *d, const message *m); /* param_commands.c */
 void param_commands_end_tick(device *d);
+void servo_commands_take(device *d, const message *m); /* servo_commands.c */
+void servo_commands_end_tick(device *d);
+void arming_begin(device *d, uint16_t request_id); /* arming.c: the servos are looked for */
+void arming_before_states(device *d);              /* found: the states may hear of the ARM */
+void arming_after_states(device *d);               /* what became of it */
+void arming_trouble(const device *d, char *text, size_t room); /* which servo, and what is wrong */
 void telemetry_send(device *d);
 void telemetry_stats(device *d, uint16_t request_id);
 void telemetry_hello(device *d, uint16_t request_id); /* and BOOT_REPORT */
 void telemetry_log(device *d, uint8_t level, const char *text);
+void telemetry_servos(device *d); /* LOG: which, and how often they are served */
 
 #endif

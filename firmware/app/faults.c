@@ -15,7 +15,11 @@ const fault_info fault_infos[FAULT_CAUSES_N] = {
     [FAULT_SETTINGS] = {"settings", "no stored copy of the settings is whole: check the values, "
                                     "then SAVE"},
     [FAULT_SELF_TEST] = {"self_test", "the self test failed: see the log for the part"},
-    [FAULT_CLOCK] = {"clock", "the clock is not what it should be: check the crystal"},
+    [FAULT_CLOCK] = {"clock",
+                     "crystal and PLL failed, it runs on 16 MHz with slow ticks: check the "
+                     "crystal"},
+    [FAULT_PROCESSOR] = {"processor", "the processor faulted and was restarted: report this, with "
+                                      "BOOT_REPORT"},
 };
 
 static void count(uint32_t *counter)

@@ -27,7 +27,8 @@ typedef enum {
     FAULT_FLASH,     /* the settings' flash reported an error or read back wrong */
     FAULT_SETTINGS,  /* settings were stored, but none of the copies is whole */
     FAULT_SELF_TEST,
-    FAULT_CLOCK, /* not the clock the firmware was built for */
+    FAULT_CLOCK,     /* not the clock the firmware was built for: told at start, can be cleared */
+    FAULT_PROCESSOR, /* the processor faulted, and the firmware restarted; likewise */
     FAULT_CAUSES_N,
 } fault_cause;
 

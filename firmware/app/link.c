@@ -101,3 +101,20 @@ void link_text(char *field, size_t room, const char *text)
     memcpy(field, text, n);
     field[n] = '\0';
 }
+
+void link_text_add(char *field, size_t room, const char *text)
+{
+    const size_t used = strlen(field);
+    link_text(field + used, room - used, text);
+}
+
+void link_text_add_number(char *field, size_t room, uint32_t number)
+{
+    char digits[11] = "";
+    int at = 10;
+    do {
+        digits[--at] = (char)('0' + number % 10u);
+        number /= 10u;
+    } while (number != 0);
+    link_text_add(field, room, digits + at);
+}

@@ -3,7 +3,7 @@
  * Reads what has arrived, hands over one good message at a time; sends messages with a drop class each
  * (message_list.h): answers and faults wait in a queue until there is room, the rest is dropped and counted
  * when the line is too full for its class: logs first, then telemetry, nodes, angles. Bounded work per tick.
- * Caller-owned, no heap; main loop only. About 7 KB.
+ * Caller-owned, no heap; main loop only. About 5 KB.
  */
 #ifndef LIMBER_LINK_H
 #define LIMBER_LINK_H
@@ -13,7 +13,7 @@
 #include "messages.h"
 
 enum {
-    LINK_QUEUE_BYTES = 4096,   /* answers that wait for room */
+    LINK_QUEUE_BYTES = 2048,   /* answers that wait for room */
     LINK_READ_MAX_BYTES = 512, /* looked at in one tick: five times what 1 Mbaud brings in 1 ms */
 };
 
@@ -47,7 +47,9 @@ bool link_receive(device_link *l, message *m, frame *header);
 /* Send; t_us goes into the header. False if it was dropped. */
 bool link_send(device_link *l, const message *m, uint32_t t_us);
 
-/* A text into a message's field of that size, cut off where it is too long. */
+/* A text, or one more text or number behind it, into a message's field of that size; cut off where it is too long. */
 void link_text(char *field, size_t room, const char *text);
+void link_text_add(char *field, size_t room, const char *text);
+void link_text_add_number(char *field, size_t room, uint32_t number);
 
 #endif

@@ -7,7 +7,7 @@
 static void take_list(device *d, const message_param_list *list)
 {
     params_info info;
-    if (!params_describe(&d->params.in_force, list->index, &info)) {
+    if (!params_describe(d->params.in_force.rod.links_n, list->index, &info)) {
         answers_refuse_for(d, list->request_id, MESSAGE_PARAM_LIST, REASON_INDEX, NULL);
         return;
     }
@@ -25,15 +25,10 @@ static void take_list(device *d, const message_param_list *list)
     link_text(m.param_info.unit, sizeof m.param_info.unit, info.unit);
     link_text(m.param_info.text, sizeof m.param_info.text, info.what);
     for (int i = 0; info.choices != NULL && i <= (int)info.max; i++) {
-        const size_t used = strlen(m.param_info.text);
-        link_text(m.param_info.text + used, sizeof m.param_info.text - used, i == 0 ? " [" : "|");
-        const size_t then = strlen(m.param_info.text);
-        link_text(m.param_info.text + then, sizeof m.param_info.text - then, info.choices[i]);
+        link_text_add(m.param_info.text, sizeof m.param_info.text, i == 0 ? " [" : "|");
+        link_text_add(m.param_info.text, sizeof m.param_info.text, info.choices[i]);
     }
-    if (info.choices != NULL) {
-        const size_t used = strlen(m.param_info.text);
-        link_text(m.param_info.text + used, sizeof m.param_info.text - used, "]");
-    }
+    link_text_add(m.param_info.text, sizeof m.param_info.text, info.choices != NULL ? "]" : "");
     (void)link_send(&d->link, &m, d->now_us);
 }
 
@@ -42,7 +37,7 @@ static void take_get(device *d, const message_param_get *get)
     const params_set *set = get->which == PARAM_STAGED ? &d->params.staged : &d->params.in_force;
     params_info info;
     const int index = params_find(get->name);
-    if (!params_describe(set, index, &info)) {
+    if (!params_describe(set->rod.links_n, index, &info)) {
         const params_refusal why = {.reason = REASON_NAME, .entry = -1, .field = get->name};
         answers_refuse(d, get->request_id, MESSAGE_PARAM_GET, &why);
         return;
@@ -96,18 +91,19 @@ static bool fits_the_line(const device *d, params_refusal *why)
 static void commit(device *d, uint16_t request_id, uint8_t type)
 {
     const bool all_allowed = supervisor_duties[d->supervisor.state].change_all;
-    const params_set before = d->params.in_force;
     params_refusal why;
-    if (!fits_the_line(d, &why) || !params_commit(&d->params, all_allowed, &why)) {
+    if (d->arming.id != 0 || d->servicing.id != 0) {
+        answers_refuse_for(d, request_id, type, REASON_BUSY, "the servos are being talked to");
+        return;
+    }
+    if (!fits_the_line(d, &why) || !params_check(&d->params, all_allowed, &why) ||
+        !device_apply_params(d, &d->params.staged, all_allowed, &why)) {
         answers_refuse(d, request_id, type, &why);
         return;
     }
-    if (!device_apply_params(d, all_allowed, &why)) {
-        d->params.staged = d->params.in_force; /* still staged, not in force */
-        d->params.in_force = before;
-        d->params.is_staged = true;
-        answers_refuse(d, request_id, type, &why);
-        return;
+    params_take(&d->params);
+    if (all_allowed) {
+        telemetry_servos(d);
     }
     d->unsaved = true;
     answers_acknowledge(d, request_id, type);
@@ -116,7 +112,8 @@ static void commit(device *d, uint16_t request_id, uint8_t type)
 static void take_preset(device *d, const message_preset *preset)
 {
     params_refusal why;
-    const params_set staged = d->params.staged;
+    const rod_params staged = d->params.staged.rod;
+    const bool was_staged = d->params.is_staged;
     if (!params_stage_preset(&d->params, preset->name, &why)) {
         answers_refuse(d, preset->request_id, MESSAGE_PRESET, &why);
         return;
@@ -124,7 +121,8 @@ static void take_preset(device *d, const message_preset *preset)
     const uint32_t generation = d->params.generation;
     commit(d, preset->request_id, MESSAGE_PRESET);
     if (d->params.generation == generation) {
-        d->params.staged = staged; /* refused: nothing has happened */
+        d->params.staged.rod = staged; /* refused: nothing has happened */
+        d->params.is_staged = was_staged;
     }
 }
 
@@ -145,7 +143,7 @@ static void take_save(device *d, uint16_t request_id)
 {
     if (!supervisor_duties[d->supervisor.state].save) {
         answers_refuse_for(d, request_id, MESSAGE_PARAM_SAVE, REASON_STATE, "only while DISARMED");
-    } else if (d->save_request != 0) {
+    } else if (d->saving.id != 0 || d->arming.id != 0) {
         answers_refuse_for(d, request_id, MESSAGE_PARAM_SAVE, REASON_BUSY, NULL);
     } else {
         const uint32_t bytes_n = saved_params_pack(&d->params.in_force, d->settings_bytes);
@@ -155,7 +153,7 @@ static void take_save(device *d, uint16_t request_id)
             answers_refuse_for(d, request_id, MESSAGE_PARAM_SAVE, REASON_FLASH,
                                settings_error_text(error));
         } else {
-            d->save_request = request_id; /* answered when it is done: commands_end_tick */
+            d->saving = (device_request){request_id, MESSAGE_PARAM_SAVE};
         }
     }
 }
@@ -189,19 +187,18 @@ void param_commands_take(device *d, const message *m)
     case MESSAGE_PRESET:
         take_preset(d, &m->preset);
         break;
-    default: /* SERVO_ASSIGN: no bus here yet */
-        answers_refuse_for(d, request_id, m->type, REASON_UNSUPPORTED, NULL);
+    default:
         break;
     }
 }
 
 void param_commands_end_tick(device *d)
 {
-    if (d->save_request != 0) {
+    if (d->saving.id != 0) {
         const settings_error error = settings_save_step(&d->settings);
         if (error != SETTINGS_BUSY) {
-            const uint16_t request_id = d->save_request;
-            d->save_request = 0;
+            const uint16_t request_id = d->saving.id;
+            d->saving.id = 0;
             if (error == SETTINGS_E_FLASH || error == SETTINGS_E_READ_BACK) {
                 faults_raise(&d->faults, FAULT_FLASH);
             }

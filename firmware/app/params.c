@@ -3,63 +3,6 @@
 
 #include <string.h>
 
-typedef enum { ENTRIES_ONE, ENTRIES_SERVOS } entries_of;
-
-typedef struct {
-    const char *name, *unit, *what;
-    uint8_t kind, flags;
-    entries_of entries;
-    float min, max, initial;
-    size_t offset; /* into device_params */
-} device_field;
-
-static const char *const POSE_MODES[] = {"predict", "interpolate"};
-
-// clang-format off
-#define ONE(member, name, unit, what, kind, flags, min, max, initial)                              \
-    {name, unit, what, kind, PARAM_KEPT | (flags), ENTRIES_ONE, min, max, initial,                 \
-     offsetof(device_params, member)}
-#define SERVO(member, name, unit, what, kind, min, max, initial)                                   \
-    {name, unit, what, kind, PARAM_KEPT | PARAM_LIST | PARAM_DISARMED_ONLY, ENTRIES_SERVOS, min, max, initial, \
-     offsetof(device_params, member)}
-// clang-format on
-
-static const device_field DEVICE_FIELDS[] = {
-    ONE(pose_mode, "pose_mode", "", "between poses: predict adds no delay, interpolate is smoother",
-        PARAM_CHOICE, 0, 0.0f, 1.0f, 0.0f),
-    ONE(pose_hold_ms, "pose_hold", "ms", "without a pose for so long the rod is held", PARAM_NUMBER,
-        0, 20.0f, 200.0f, 50.0f),
-    ONE(pose_speed_mps, "pose_speed", "m/s", "faster is no hand: such poses are rejected",
-        PARAM_NUMBER, 0, 0.5f, 200.0f, 25.0f),
-    ONE(pose_turn_radps, "pose_turn", "rad/s", "likewise for turning", PARAM_NUMBER, 0, 1.0f,
-        1000.0f, 150.0f),
-    ONE(angles_hz, "angles_rate", "Hz", "how often ANGLES are sent", PARAM_NUMBER, 0, 1.0f, 2000.0f,
-        100.0f),
-    ONE(nodes_hz, "nodes_rate", "Hz", "how often NODES are sent, 0: never", PARAM_NUMBER, 0, 0.0f,
-        500.0f, 0.0f),
-    ONE(pose_log, "pose_log", "", "1: the exact pose of every tick is sent", PARAM_WHOLE, 0, 0.0f,
-        1.0f, 0.0f),
-    ONE(blend_s, "blend", "s", "other parameters take over within this time", PARAM_NUMBER, 0,
-        0.05f, 5.0f, 0.3f),
-    ONE(servo_hz, "servo_rate", "Hz", "how often servos get new goals", PARAM_NUMBER,
-        PARAM_DISARMED_ONLY, 10.0f, 2000.0f, 500.0f),
-    ONE(servo_rate_radps, "servo_speed", "rad/s", "most speed of a servo", PARAM_NUMBER,
-        PARAM_DISARMED_ONLY, 0.1f, 100.0f, 12.0f),
-    ONE(servo_acceleration_radps2, "servo_acceleration", "rad/s^2", "most acceleration of a servo",
-        PARAM_NUMBER, PARAM_DISARMED_ONLY, 1.0f, 10000.0f, 600.0f),
-    SERVO(servo_id, "servo_id", "", "on the bus, or the PWM channel", PARAM_WHOLE, 0.0f, 252.0f,
-          0.0f),
-    SERVO(servo_sign, "servo_sign", "", "1, or -1 for one mounted the other way round", PARAM_WHOLE,
-          -1.0f, 1.0f, 1.0f),
-    SERVO(servo_offset_rad, "servo_offset", "rad", "where the joint is straight", PARAM_NUMBER,
-          -3.2f, 3.2f, 0.0f),
-    SERVO(servo_min_rad, "servo_min", "rad", "range of the servo, from straight", PARAM_NUMBER,
-          -3.2f, 0.0f, -1.6f),
-    SERVO(servo_max_rad, "servo_max", "rad", "range of the servo, from straight", PARAM_NUMBER,
-          0.0f, 3.2f, 1.6f),
-};
-enum { DEVICE_FIELDS_N = sizeof DEVICE_FIELDS / sizeof DEVICE_FIELDS[0] };
-
 static uint8_t rod_flags(const rod_field *field)
 {
     if (field->offset == offsetof(rod_params, tick_s)) {
@@ -82,12 +25,11 @@ int params_count(void)
     return ROD_FIELDS_N + DEVICE_FIELDS_N;
 }
 
-bool params_describe(const params_set *set, int index, params_info *info)
+bool params_describe(int links_n, int index, params_info *info)
 {
     if (index < 0 || index >= params_count()) {
         return false;
     }
-    const int links_n = set->rod.links_n;
     if (index < ROD_FIELDS_N) {
         const rod_field *f = &rod_fields[index];
         *info = (params_info){f->name,
@@ -101,11 +43,11 @@ bool params_describe(const params_set *set, int index, params_info *info)
                               f->max,
                               f->initial};
     } else {
-        const device_field *f = &DEVICE_FIELDS[index - ROD_FIELDS_N];
+        const device_field *f = &device_fields[index - ROD_FIELDS_N];
         *info = (params_info){f->name,
                               f->unit,
                               f->what,
-                              f->kind == PARAM_CHOICE ? POSE_MODES : NULL,
+                              f->choices,
                               f->kind,
                               f->flags,
                               (uint16_t)(f->entries == ENTRIES_SERVOS ? 2 * links_n : 1),
@@ -124,7 +66,7 @@ int params_find(const char *name)
         }
     }
     for (int i = 0; i < DEVICE_FIELDS_N; i++) {
-        if (strcmp(DEVICE_FIELDS[i].name, name) == 0) {
+        if (strcmp(device_fields[i].name, name) == 0) {
             return ROD_FIELDS_N + i;
         }
     }
@@ -133,7 +75,7 @@ int params_find(const char *name)
 
 static float *place(params_set *set, int index, int entry)
 {
-    const device_field *f = &DEVICE_FIELDS[index - ROD_FIELDS_N];
+    const device_field *f = &device_fields[index - ROD_FIELDS_N];
     return (float *)(void *)((char *)&set->device + f->offset) + entry;
 }
 
@@ -142,7 +84,7 @@ float params_get(const params_set *set, int index, int entry)
     if (index < ROD_FIELDS_N) {
         return rod_field_get(&rod_fields[index], &set->rod, entry);
     }
-    const device_field *f = &DEVICE_FIELDS[index - ROD_FIELDS_N];
+    const device_field *f = &device_fields[index - ROD_FIELDS_N];
     return ((const float *)(const void *)((const char *)&set->device + f->offset))[entry];
 }
 
@@ -151,7 +93,7 @@ static int entries_max(int index)
 {
     const bool list = index < ROD_FIELDS_N
                           ? rod_fields[index].kind == ROD_FIELD_PER_JOINT
-                          : DEVICE_FIELDS[index - ROD_FIELDS_N].entries == ENTRIES_SERVOS;
+                          : device_fields[index - ROD_FIELDS_N].entries == ENTRIES_SERVOS;
     return !list ? 1 : index < ROD_FIELDS_N ? ROD_MAX_LINKS : PARAMS_SERVOS_MAX;
 }
 
@@ -174,7 +116,7 @@ static void set_defaults(params_set *set, float tick_s)
     set->rod.tick_s = tick_s;
     for (int i = ROD_FIELDS_N; i < params_count(); i++) {
         for (int entry = 0; entry < entries_max(i); entry++) {
-            params_put(set, i, entry, DEVICE_FIELDS[i - ROD_FIELDS_N].initial);
+            params_put(set, i, entry, device_fields[i - ROD_FIELDS_N].initial);
         }
     }
     for (int servo = 0; servo < PARAMS_SERVOS_MAX; servo++) {
@@ -224,7 +166,7 @@ bool params_stage(params *p, const char *name, int first, const float *values, i
     params_info info;
     const int index = params_find(name);
     *why = (params_refusal){.entry = -1, .field = name};
-    if (!params_describe(&p->staged, index, &info)) {
+    if (!params_describe(p->staged.rod.links_n, index, &info)) {
         return refuse(why, (params_refusal){REASON_NAME, -1, 0, 0, 0, name, text_of(REASON_NAME)});
     }
     if (info.flags & PARAM_READ_ONLY) {
@@ -296,8 +238,7 @@ static bool check_rod(const params_set *set, params_refusal *why)
     rod_refusal refusal;
     rod_error error = rod_params_check(&set->rod, &refusal);
     int row_n;
-    static contour
-        trial; /* 4 KB that no stack of a board needs to hold; the main loop is alone here */
+    contour trial; /* 2 KB of stack: memory of its own would be idle for ever */
     if (error == ROD_OK) {
         error = contour_prepare(&trial, &set->rod, &row_n);
         refusal = (rod_refusal){error, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
@@ -316,7 +257,7 @@ bool params_check(const params *p, bool all_allowed, params_refusal *why)
 {
     for (int i = 0; i < params_count() && !all_allowed; i++) {
         params_info info;
-        (void)params_describe(&p->staged, i, &info);
+        (void)params_describe(p->staged.rod.links_n, i, &info);
         const int entry = info.flags & PARAM_DISARMED_ONLY ? difference(p, i, info.entries_n) : -1;
         if (entry >= 0) {
             return refuse(why,
@@ -335,13 +276,18 @@ bool params_check(const params *p, bool all_allowed, params_refusal *why)
     return check_rod(&p->staged, why);
 }
 
+void params_take(params *p)
+{
+    p->in_force = p->staged;
+    p->is_staged = false;
+    p->generation++;
+}
+
 bool params_commit(params *p, bool all_allowed, params_refusal *why)
 {
     if (!params_check(p, all_allowed, why)) {
         return false;
     }
-    p->in_force = p->staged;
-    p->is_staged = false;
-    p->generation++;
+    params_take(p);
     return true;
 }

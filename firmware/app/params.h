@@ -14,30 +14,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "device_params.h"
 #include "message_values.h"
 #include "rod.h"
-
-enum { PARAMS_SERVOS_MAX = 2 * ROD_MAX_LINKS };
-
-/* What the device itself can be told, beside the rod's parameters. */
-typedef struct {
-    float pose_mode;      /* 0 predict, 1 interpolate */
-    float pose_hold_ms;   /* without a pose for so long: HOLD */
-    float pose_speed_mps; /* faster is no hand: the pose is rejected */
-    float pose_turn_radps;
-    float angles_hz;        /* rate of ANGLES */
-    float nodes_hz;         /* rate of NODES; 0: none */
-    float pose_log;         /* 1: POSE_LOG every tick */
-    float blend_s;          /* a preset or other parameters take over within this time */
-    float servo_hz;         /* rate of servo output */
-    float servo_rate_radps; /* most speed of a servo */
-    float servo_acceleration_radps2;
-    float servo_id[PARAMS_SERVOS_MAX];   /* on the bus, or the PWM channel */
-    float servo_sign[PARAMS_SERVOS_MAX]; /* 1 or -1 */
-    float servo_offset_rad[PARAMS_SERVOS_MAX];
-    float servo_min_rad[PARAMS_SERVOS_MAX];
-    float servo_max_rad[PARAMS_SERVOS_MAX];
-} device_params;
 
 typedef struct {
     rod_params rod;
@@ -72,9 +51,10 @@ typedef struct {
 /* Defaults, in force and staged. */
 void params_init(params *p);
 
-/* How many there are, and one of them by index or by name; false where there is none. */
+/* How many there are, and one of them by index or by name; false where there is none. entries_n is that of a rod
+ * of links_n links. */
 int params_count(void);
-bool params_describe(const params_set *set, int index, params_info *info);
+bool params_describe(int links_n, int index, params_info *info);
 int params_find(const char *name); /* -1 where there is none */
 
 /* One value of a set; entry < entries_n. */
@@ -97,7 +77,10 @@ void params_unstage(params *p);
 /* Would the staged set be taken? all_allowed: fields that may change only while disarmed may. */
 bool params_check(const params *p, bool all_allowed, params_refusal *why);
 
-/* params_check, and if it agrees the staged set is in force from here on. */
+/* The staged set, checked before, is in force from here on. */
+void params_take(params *p);
+
+/* Check, and take if that agrees. */
 bool params_commit(params *p, bool all_allowed, params_refusal *why);
 
 #endif

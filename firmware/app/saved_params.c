@@ -28,10 +28,9 @@ static uint32_t get_u32(const uint8_t *from)
 uint32_t saved_params_bytes_max(void)
 {
     uint32_t bytes = 0;
-    params_set none = {.rod.links_n = ROD_MAX_LINKS};
     for (int i = 0; i < params_count(); i++) {
         params_info info;
-        (void)params_describe(&none, i, &info);
+        (void)params_describe(ROD_MAX_LINKS, i, &info);
         bytes += info.flags & PARAM_KEPT ? HEAD_BYTES + 4u * info.entries_n : 0u;
     }
     return bytes;
@@ -42,7 +41,7 @@ uint32_t saved_params_pack(const params_set *set, uint8_t *bytes)
     uint8_t *to = bytes;
     for (int i = 0; i < params_count(); i++) {
         params_info info;
-        (void)params_describe(set, i, &info);
+        (void)params_describe(set->rod.links_n, i, &info);
         if ((info.flags & PARAM_KEPT) == 0) {
             continue;
         }
@@ -61,10 +60,9 @@ uint32_t saved_params_pack(const params_set *set, uint8_t *bytes)
 
 static int find_by_hash(uint32_t hash)
 {
-    params_set none = {.rod.links_n = 1};
     for (int i = 0; i < params_count(); i++) {
         params_info info;
-        (void)params_describe(&none, i, &info);
+        (void)params_describe(1, i, &info);
         if (name_hash(info.name) == hash) {
             return i;
         }

@@ -87,6 +87,22 @@ static uint8_t stop(servo_motion *s, uint32_t acted)
     return advance(s, 0, acted);
 }
 
+/* The everyday case, and the same as what follow and advance would come to: the goal is where the target was, nothing
+ * is near an end, and the target's own motion keeps the limits. */
+static bool keeps_up(servo_motion *s, int32_t target)
+{
+    const int32_t moved = target - s->target, change = moved - s->speed;
+    const bool free = s->goal == s->target && s->max - s->goal >= s->room_for_more &&
+                      s->goal - s->min >= s->room_for_more;
+    if (!free || moved > s->rate || moved < -s->rate || change > s->accel || change < -s->accel) {
+        return false;
+    }
+    s->goal = s->target = target;
+    s->speed = moved;
+    s->acted = 0;
+    return true;
+}
+
 static uint8_t follow(servo_motion *s, float target_rad)
 {
     if (!is_finite(target_rad)) {
@@ -105,6 +121,9 @@ static uint8_t follow(servo_motion *s, float target_rad)
     } else {
         target = clamp(to_units(target_rad), s->min, s->max);
     }
+    if (s->target_known && acted == 0 && keeps_up(s, target)) {
+        return 0;
+    }
     /* Move as the target moved, and besides toward it, no faster than can be braked before it. */
     const int32_t moved = s->target_known ? clamp(target - s->target, -s->rate, s->rate) : 0;
     const int32_t behind = (s->target_known ? s->target : target) - s->goal;
@@ -116,7 +135,7 @@ static uint8_t follow(servo_motion *s, float target_rad)
 
 static uint32_t count_up(servo_map *map, int servo, uint32_t acted)
 {
-    for (int limiter = 0; acted != 0 && limiter < SERVO_LIMITERS_N; limiter++) {
+    for (int limiter = 0; acted >> limiter != 0; limiter++) {
         if ((acted >> limiter & 1u) != 0 && map->counts[limiter] < UINT32_MAX) {
             map->counts[limiter]++;
         }

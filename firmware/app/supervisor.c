@@ -147,3 +147,8 @@ const supervisor_rule *supervisor_step(supervisor *s, uint32_t conditions, uint3
     s->in_state_us = 0;
     return rule;
 }
+
+void supervisor_start_over(supervisor *s)
+{
+    s->in_state_us = 0;
+}

@@ -128,4 +128,7 @@ void supervisor_init(supervisor *s);
  * in the first step at or after time_us. */
 const supervisor_rule *supervisor_step(supervisor *s, uint32_t conditions, uint32_t now_us);
 
+/* The state's time begins now: what it is for could not begin before. */
+void supervisor_start_over(supervisor *s);
+
 #endif

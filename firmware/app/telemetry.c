@@ -16,6 +16,21 @@ void telemetry_log(device *d, uint8_t level, const char *text)
     (void)link_send(&d->link, &m, d->now_us);
 }
 
+void telemetry_servos(device *d)
+{
+    static const char *const KINDS[] = {[SERVOS_NONE] = "servos: none; ",
+                                        [SERVOS_PWM] = "servos: hobby, on PWM; ",
+                                        [SERVOS_BUS] = "servos: on a bus; "};
+    message m = {.type = MESSAGE_LOG, .log = {.level = LEVEL_INFO}};
+    link_text(m.log.text, sizeof m.log.text, KINDS[d->servos.config.kind]);
+    link_text_add_number(m.log.text, sizeof m.log.text, (uint32_t)d->body.map.servos_n);
+    link_text_add(m.log.text, sizeof m.log.text, " goals every ");
+    link_text_add_number(m.log.text, sizeof m.log.text,
+                         (uint32_t)(d->body.map.period_s * 1e6f + 0.5f));
+    link_text_add(m.log.text, sizeof m.log.text, " us");
+    (void)link_send(&d->link, &m, d->now_us);
+}
+
 /* Why it last started, and on what settings. */
 static void send_boot_report(device *d)
 {
@@ -26,12 +41,18 @@ static void send_boot_report(device *d)
         [SETTINGS_OLDER] = ORIGIN_OLDER,
         [SETTINGS_DAMAGED] = ORIGIN_LOST,
     };
+    static const uint8_t FAULTS[] = {
+        [HAL_FAULT_NONE] = FAULT_CODE_NONE,
+        [HAL_FAULT_PROCESSOR] = FAULT_CODE_PROCESSOR,
+        [HAL_FAULT_STACK] = FAULT_CODE_CANARY,
+        [HAL_FAULT_WATCHDOG] = FAULT_CODE_WATCHDOG,
+    };
     const settings *s = &d->settings;
     const message m = {
         .type = MESSAGE_BOOT_REPORT,
         .boot_report = {
             .cause = (uint8_t)boot->cause,
-            .fault = boot->cause == HAL_RESET_FAULT ? FAULT_CODE_PROCESSOR : FAULT_CODE_NONE,
+            .fault = boot->cause == HAL_RESET_FAULT ? FAULTS[boot->fault] : FAULT_CODE_NONE,
             .settings = ORIGINS[s->origin],
             .clock = boot->clock_kind,
             .flags = boot->estop_ignored ? BOOT_ESTOP_IGNORED : 0,
@@ -43,6 +64,12 @@ static void send_boot_report(device *d)
     (void)link_send(&d->link, &m, d->now_us);
 }
 
+static uint32_t features(const device *d)
+{
+    const bool bus = d->servos.config.kind == SERVOS_BUS;
+    return d->config.features | (bus ? FEATURE_SERVO_POSITIONS : 0u);
+}
+
 void telemetry_hello(device *d, uint16_t request_id)
 {
     const params_set *set = &d->params.in_force;
@@ -51,7 +78,7 @@ void telemetry_hello(device *d, uint16_t request_id)
                            .protocol_major = PROTOCOL_MAJOR,
                            .protocol_minor = PROTOCOL_MINOR,
                            .layout_hash = messages_layout_hash(),
-                           .features = d->config.features,
+                           .features = features(d),
                            .links_max = ROD_MAX_LINKS,
                            .links_n = (uint16_t)set->rod.links_n,
                            .tick_max_hz = d->config.tick_max_hz,
@@ -62,6 +89,7 @@ void telemetry_hello(device *d, uint16_t request_id)
     link_text(m.hello.build, sizeof m.hello.build, d->config.build);
     (void)link_send(&d->link, &m, d->now_us);
     send_boot_report(d);
+    telemetry_servos(d);
 }
 
 static int16_t tenth_mrad(float angle_rad)
@@ -230,6 +258,10 @@ static void send_faults(device *d)
                                    .state = (uint8_t)d->supervisor.state,
                                    .tick = d->tick}};
             link_text(m.fault.text, sizeof m.fault.text, fault_infos[cause].text);
+            if (cause == FAULT_SERVO) {
+                m.fault.detail = d->servos.trouble.id;
+                arming_trouble(d, m.fault.text, sizeof m.fault.text);
+            }
             (void)link_send(&d->link, &m, d->now_us);
         }
     }

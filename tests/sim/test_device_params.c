@@ -61,7 +61,7 @@ static void test_bad_values_are_refused_and_the_old_ones_stay(void)
 {
     for (int i = 0; i < params_count(); i++) {
         params_info info;
-        TEST_ASSERT_TRUE(params_describe(&b->host.device.params.in_force, i, &info));
+        TEST_ASSERT_TRUE(params_describe(b->host.device.params.in_force.rod.links_n, i, &info));
         const float step = info.kind == PARAM_NUMBER ? 1e-3f * (1.0f + fabsf(info.max)) : 1.0f;
         const float bad[] = {info.min - step, info.max + step, NAN, INFINITY, -INFINITY};
         for (int k = 0; k < 5; k++) {
