@@ -56,7 +56,7 @@ static void a_bus_is_served_as_often_as_it_carries(void)
             bus_of(LINKS_N[l], BAUDS[b]);
             const float bytes_s = 10.0f * (14.0f + 10.0f * (float)LINKS_N[l]) / (float)BAUDS[b];
             if (!servo_setup_make(&setup, &all.in_force, &why)) {
-                TEST_ASSERT_TRUE_MESSAGE(bytes_s > 0.09f, "only what takes too long is refused");
+                TEST_ASSERT_TRUE_MESSAGE(bytes_s > 0.04f, "only what takes too long is refused");
                 continue;
             }
             TEST_ASSERT_TRUE(setup.period_s >= bytes_s);

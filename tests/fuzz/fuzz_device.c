@@ -1,6 +1,6 @@
 /* fuzz_device.c - whole conversations with the whole device; traps where a person could be hurt.
  *
- * The input is a list of actions; each is a byte that says what, a byte that says how much, and bytes:
+ * The first byte chooses the servos. Then comes a list of actions; each is a byte that says what, a byte that says how much, and bytes:
  *   0  so many bytes from the line, as they are
  *   1  a message with a right checksum, in session: type, then its payload of so many bytes
  *   2  so many ticks
@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "bus_model.h"
 #include "device.h"
 
 #define PROMISE(condition)                                                                         \
@@ -20,19 +21,32 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *input, size_t input_n);
 
-enum { FLASH_BYTES = 32 * 1024, SESSION = 9 };
+enum { FLASH_BYTES = 32 * 1024, SESSION = 9, LINKS_N = 4 };
 
 static struct {
     hal hal;
     uint32_t now_us;
     uint8_t line[2 * FRAME_WIRE_MAX];
     size_t line_n;
-    bool powered, rebooted;
-    float goals_rad[SERVOS_MAX];
+    double now_s; /* the same, for the servos */
+    bool rebooted;
+    uint8_t servos_kind;
+    servo_plant plant;
+    bus_model bus;
+    uint32_t pulses[HAL_PWM_CHANNELS_N];
     uint8_t flash[HAL_FLASH_SECTORS_N][FLASH_BYTES];
     device device;
     uint16_t pose_seq;
 } world;
+
+static bool has_torque(void)
+{
+    bool some = servo_plant_has_torque(&world.plant);
+    for (int i = 0; i < HAL_PWM_CHANNELS_N; i++) {
+        some = some || world.pulses[i] != 0;
+    }
+    return some;
+}
 
 static uint32_t now_us(void *context)
 {
@@ -69,26 +83,63 @@ static uint32_t none(void *context)
     return 0;
 }
 
-static void servo_power(void *context, bool on)
+static void servo_supply(void *context, bool on)
 {
     (void)context;
-    world.powered = on;
+    world.plant.powered = on;
 }
 
-static void servo_write(void *context, const float *goals_rad, int servos_n)
+static bool pwm_start(void *context, float rate_hz)
 {
     (void)context;
-    for (int i = 0; i < servos_n; i++) {
-        PROMISE(fabsf(goals_rad[i]) <= SERVO_REACH_RAD);
-        world.goals_rad[i] = goals_rad[i];
-    }
-}
-
-static bool servo_read(void *context, float *positions_rad, int servos_n)
-{
-    (void)context;
-    memcpy(positions_rad, world.goals_rad, (size_t)servos_n * sizeof *positions_rad);
+    PROMISE(rate_hz >= 50.0f && rate_hz <= 333.0f);
     return true;
+}
+
+static void pwm_pulse(void *context, int channel, uint32_t width_us)
+{
+    (void)context;
+    PROMISE(channel >= 0 && channel < HAL_PWM_CHANNELS_N);
+    PROMISE(width_us == 0 || (width_us >= 500 && width_us <= 2500 && world.plant.powered));
+    world.pulses[channel] = width_us;
+}
+
+static void pwm_stop(void *context)
+{
+    (void)context;
+    memset(world.pulses, 0, sizeof world.pulses);
+}
+
+static bool bus_start(void *context, uint32_t baud)
+{
+    (void)context;
+    bus_wire_start(&world.bus.wire, baud);
+    return true;
+}
+
+static bool bus_write(void *context, const uint8_t *bytes, size_t bytes_n)
+{
+    (void)context;
+    PROMISE(bytes_n > 0 && bytes_n <= HAL_BUS_PACKET_MAX_BYTES);
+    return bus_wire_send(&world.bus.wire, bytes, bytes_n, world.now_s);
+}
+
+static bool bus_sending(void *context)
+{
+    (void)context;
+    return bus_wire_sending(&world.bus.wire, world.now_s);
+}
+
+static size_t bus_read(void *context, uint8_t *bytes, size_t room)
+{
+    (void)context;
+    return bus_wire_read(&world.bus.wire, bytes, room, world.now_s);
+}
+
+static void bus_abort(void *context)
+{
+    (void)context;
+    bus_wire_abort(&world.bus.wire, world.now_s);
 }
 
 static bool yes(void *context)
@@ -121,7 +172,7 @@ static bool flash_write(void *context, int sector, uint32_t offset, const void *
 {
     (void)context;
     PROMISE(offset % 4 == 0 && bytes_n % 4 == 0 && offset + bytes_n <= FLASH_BYTES);
-    PROMISE(!world.powered);
+    PROMISE(!has_torque());
     for (size_t i = 0; i < bytes_n; i++) {
         world.flash[sector][offset + i] &= ((const uint8_t *)bytes)[i];
     }
@@ -131,7 +182,7 @@ static bool flash_write(void *context, int sector, uint32_t offset, const void *
 static bool flash_erase(void *context, int sector)
 {
     (void)context;
-    PROMISE(!world.powered);
+    PROMISE(!world.plant.powered);
     memset(world.flash[sector], 0xFF, FLASH_BYTES);
     return true;
 }
@@ -144,17 +195,21 @@ static void nothing(void *context)
 static void reboot(void *context)
 {
     (void)context;
-    PROMISE(!world.powered);
+    PROMISE(!world.plant.powered);
     world.rebooted = true;
 }
 
 static void start(void)
 {
-    static const device_config CONFIG = {
-        .tick_s = 1e-3f, .tick_max_hz = 1000.0f, .name = "fuzz", .build = "", .links_n = 5};
+    const device_config config = {.tick_s = 1e-3f,
+                                  .tick_max_hz = 1000.0f,
+                                  .name = "fuzz",
+                                  .build = "",
+                                  .links_n = LINKS_N,
+                                  .servos_kind = world.servos_kind};
     static const hal_boot BOOT = {.clock_kind = CLOCK_HOST};
-    world.rebooted = world.powered = false;
-    device_init(&world.device, &world.hal, &CONFIG, &BOOT);
+    world.rebooted = false;
+    device_init(&world.device, &world.hal, &config, &BOOT);
 }
 
 static void say(uint8_t type, uint16_t seq, const uint8_t *payload, size_t payload_n)
@@ -170,10 +225,16 @@ static void tick(void)
 {
     device_tick(&world.device);
     world.now_us += 1000;
+    world.now_s += 1e-3;
+    bus_model_run(&world.bus, world.now_s);
+    servo_plant_tick(&world.plant, 1e-3f);
     const device *d = &world.device;
     const supervisor_state state = d->supervisor.state;
-    PROMISE(world.powered == supervisor_duties[state].servo_power);
-    PROMISE(!world.powered || (state >= SUPERVISOR_ARMING && state <= SUPERVISOR_RELAX));
+    const bool may_move = state >= SUPERVISOR_ARMING && state <= SUPERVISOR_RELAX;
+    const bool tested = state == SUPERVISOR_DISARMED && d->servos.state == SERVOS_SERVICE;
+    PROMISE(!has_torque() || may_move || tested);
+    PROMISE(!world.plant.powered || may_move || state == SUPERVISOR_DISARMED ||
+            state == SUPERVISOR_LIMP);
     const rod_joint *angles = rod_angles(&d->body.rod);
     for (int i = 0; i < d->params.in_force.rod.links_n; i++) {
         PROMISE(fabsf(angles[i][0]) < 1.6f && fabsf(angles[i][1]) < 1.6f);
@@ -206,12 +267,35 @@ int LLVMFuzzerTestOneInput(const uint8_t *input, size_t input_n)
 {
     memset(&world, 0, sizeof world);
     memset(world.flash, 0xFF, sizeof world.flash);
-    world.hal = (hal){NULL,        now_us,      line_read,   line_write,  line_free, none,
-                      none,        servo_power, servo_write, servo_read,  yes,       no,
-                      sector_size, flash_read,  flash_write, flash_erase, nothing,   reboot};
+    servo_plant_init(&world.plant, 3, 15.0f);
+    bus_model_init(&world.bus, &world.plant, 2 * LINKS_N, 1000000);
+    world.servos_kind = input_n > 0 ? input[0] % SERVOS_KINDS_N : SERVOS_BUS;
+    world.hal = (hal){.now_us = now_us,
+                      .line_read = line_read,
+                      .line_write = line_write,
+                      .line_free = line_free,
+                      .line_overruns = none,
+                      .line_framing_errors = none,
+                      .servo_supply = servo_supply,
+                      .pwm_start = pwm_start,
+                      .pwm_pulse = pwm_pulse,
+                      .pwm_stop = pwm_stop,
+                      .bus_start = bus_start,
+                      .bus_write = bus_write,
+                      .bus_sending = bus_sending,
+                      .bus_read = bus_read,
+                      .bus_abort = bus_abort,
+                      .estop_pressed = no,
+                      .flash_sector_size = sector_size,
+                      .flash_read = flash_read,
+                      .flash_write = flash_write,
+                      .flash_erase = flash_erase,
+                      .stack_intact = yes,
+                      .watchdog_feed = nothing,
+                      .reboot = reboot};
     start();
     say_hello();
-    for (size_t at = 0; at + 2 <= input_n;) {
+    for (size_t at = 1; at + 2 <= input_n;) {
         const uint8_t what = input[at] % 4;
         size_t n = input[at + 1];
         at += 2;

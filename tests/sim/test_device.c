@@ -113,8 +113,7 @@ static void test_silence_ends_limp_and_needs_a_fresh_arm(void)
     sway(1000, 10, 0.05f);
     TEST_ASSERT_EQUAL_INT(SUPERVISOR_LIMP, state_now());
     ask_simply(MESSAGE_ARM);
-    sway(1300, 10, 0.05f);
-    TEST_ASSERT_EQUAL_INT(SUPERVISOR_ACTIVE, state_now());
+    sway_until_active();
 }
 
 static void test_estop_takes_the_torque_within_one_tick(void)
@@ -133,8 +132,7 @@ static void test_estop_takes_the_torque_within_one_tick(void)
         sway(300, 10, 0.05f);
         TEST_ASSERT_EQUAL_INT(SUPERVISOR_DISARMED, state_now());
         ask_simply(MESSAGE_ARM);
-        sway(1200, 10, 0.05f);
-        TEST_ASSERT_EQUAL_INT(SUPERVISOR_ACTIVE, state_now());
+        sway_until_active();
     }
 }
 

@@ -131,8 +131,7 @@ static void test_what_needs_disarmed_waits_for_it(void)
 {
     sway(300, 10, 0.05f);
     ask_simply(MESSAGE_ARM);
-    sway(1300, 10, 0.05f);
-    TEST_ASSERT_EQUAL_INT(SUPERVISOR_ACTIVE, state_now());
+    sway_until_active();
     set("links", 0, 4.0f);
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
