@@ -1,13 +1,12 @@
 /* device_command.c - limber-sim device: a board without a board, for the tool that will talk to the real one. */
-#include <errno.h>
 #include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "host_device.h"
+#include "live.h"
 #include "options.h"
 #include "sim.h"
 
@@ -22,13 +21,18 @@ enum {
     OPTION_INJECT,
     OPTION_SECONDS,
     OPTION_RATE,
+    OPTION_SERVOS,
+    OPTION_SERVO_BAUD,
+    OPTION_FACTORY,
+    OPTION_ECHO,
 };
 
 static const char EXAMPLES[] =
     "  limber-sim device --pty build/rod                        # one terminal\n"
     "  limber stream --port pty:build/rod build/tracks/star.txt # another\n"
     "  limber-sim device --tcp 127.0.0.1:5555 --flash build/flash.bin --log build/body.log\n"
-    "  limber-sim device --pty build/rod --inject noise@2+1:0.001 --inject servo@5+0.1\n\n"
+    "  limber-sim device --pty build/rod --inject noise@2+1:0.001 --inject servo@5+0.1:3\n"
+    "  limber-sim device --pty build/rod --factory             # see limber servo --help\n\n"
     "Ends with Ctrl-C, and then prints the hash of all angles; limber-sim replay --per-tick LOG "
     "comes to "
     "the same.\n";
@@ -38,30 +42,20 @@ typedef struct {
     bool at_full_speed;
     long links_n, baud;
     double seconds, rate_hz;
+    host_servos servos;
 } choices;
 
-static volatile sig_atomic_t asked_to_stop;
-
-static void stop(int signal_number)
+static int take_servos(host_servos *servos, const char *text)
 {
-    (void)signal_number;
-    asked_to_stop = 1;
-}
-
-static int take_text(char **to, char *text)
-{
-    free(*to);
-    *to = strdup(text);
-    return SIM_OK;
-}
-
-static int take_number(const char *option, const char *text, double min, double max, double *to)
-{
-    char *end;
-    *to = strtod(text, &end);
-    return end != text && *end == '\0' && *to >= min && *to <= max
-               ? SIM_OK
-               : sim_complain("%s %.40s: must be a number from %g to %g", option, text, min, max);
+    static const char *const KINDS[SERVOS_KINDS_N] = {
+        [SERVOS_NONE] = "none", [SERVOS_PWM] = "pwm", [SERVOS_BUS] = "bus"};
+    for (int kind = 0; kind < SERVOS_KINDS_N; kind++) {
+        if (strcmp(text, KINDS[kind]) == 0) {
+            servos->kind = (servos_kind)kind;
+            return SIM_OK;
+        }
+    }
+    return sim_complain("--servos %.40s: must be bus, pwm or none", text);
 }
 
 static int take_option(choices *c, injection *faults, int option, char *text)
@@ -70,27 +64,38 @@ static int take_option(choices *c, injection *faults, int option, char *text)
     int result = SIM_OK;
     switch (option) {
     case OPTION_PTY:
-        return take_text(&c->pty, text);
+        return live_text(&c->pty, text);
     case OPTION_TCP:
-        return take_text(&c->tcp, text);
+        return live_text(&c->tcp, text);
     case OPTION_LOG:
-        return take_text(&c->log, text);
+        return live_text(&c->log, text);
     case OPTION_FLASH:
-        return take_text(&c->flash, text);
+        return live_text(&c->flash, text);
     case OPTION_INJECT:
         return injection_add(faults, text);
     case OPTION_SECONDS:
-        return take_number("--seconds", text, 0.0, 1e9, &c->seconds);
+        return live_number("--seconds", text, 0.0, 1e9, &c->seconds);
     case OPTION_RATE:
-        return take_number("--rate", text, 100.0, 2000.0, &c->rate_hz);
+        return live_number("--rate", text, 100.0, 2000.0, &c->rate_hz);
     case OPTION_LINKS:
-        result = take_number("--links", text, 1.0, (double)ROD_MAX_LINKS, &number);
+        result = live_number("--links", text, 1.0, (double)ROD_MAX_LINKS, &number);
         c->links_n = (long)number;
         return result;
     case OPTION_BAUD:
-        result = take_number("--baud", text, 0.0, 1e7, &number);
+        result = live_number("--baud", text, 0.0, 1e7, &number);
         c->baud = (long)number;
         return result;
+    case OPTION_SERVOS:
+        return take_servos(&c->servos, text);
+    case OPTION_SERVO_BAUD:
+        return live_servo_baud("--servo-baud", text, &c->servos.baud);
+    case OPTION_FACTORY:
+        c->servos.servos_n = 1;
+        c->servos.baud = BUS_SERVO_FACTORY_BAUD;
+        return SIM_OK;
+    case OPTION_ECHO:
+        c->servos.echo = true;
+        return SIM_OK;
     default:
         c->at_full_speed = strcmp(text, "max") == 0;
         return c->at_full_speed || strcmp(text, "real") == 0
@@ -128,22 +133,13 @@ static int take_options(poptContext context, choices *c, injection *faults, bool
 
 static int open_all(host_device *h, const choices *c)
 {
-    int port = 0;
     int result = flash_file_open(&h->flash, c->flash);
     if (result == SIM_OK) {
         result = body_log_open(&h->log, c->log);
     }
-    if (result == SIM_OK) {
-        result = c->pty != NULL ? line_open_pty(&h->line, c->pty)
-                                : line_open_tcp(&h->line, c->tcp, &port);
-    }
-    if (result == SIM_OK && c->pty != NULL) {
-        printf("limber-sim device: limber ... --port pty:%s\n", c->pty);
-    } else if (result == SIM_OK) {
-        printf("limber-sim device: limber ... --port tcp:127.0.0.1:%d\n", port);
-    }
-    fflush(stdout);
-    return result;
+    return result == SIM_OK
+               ? live_open_line(&h->line, "limber-sim device: limber ... --port ", c->pty, c->tcp)
+               : result;
 }
 
 static bool is_over(const struct timespec *moment)
@@ -160,7 +156,7 @@ static void run(host_device *h, const choices *c)
     const long tick_ns = (long)(1e9 / c->rate_hz + 0.5);
     struct timespec next;
     clock_gettime(CLOCK_MONOTONIC, &next);
-    while (!asked_to_stop && (c->seconds <= 0.0 || h->elapsed_s < c->seconds)) {
+    while (!live_asked_to_stop() && (c->seconds <= 0.0 || h->elapsed_s < c->seconds)) {
         host_device_tick(h);
         if (c->at_full_speed) {
             continue;
@@ -182,14 +178,13 @@ static int run_device(const choices *c, const injection *faults)
         return sim_give_up("out of memory");
     }
     h->injection = *faults;
+    h->servos = c->servos;
     h->line_baud = (uint32_t)c->baud;
     h->line = (line){.fd = -1, .listen_fd = -1, .kept_fd = -1};
     servo_plant_init(&h->plant, 3, 15.0f);
     int result = open_all(h, c);
     if (result == SIM_OK) {
-        signal(SIGINT, stop);
-        signal(SIGTERM, stop);
-        signal(SIGPIPE, SIG_IGN);
+        live_catch_signals();
         host_device_start(h, (float)(1.0 / c->rate_hz), (int)c->links_n);
         run(h, c);
         printf("ticks      %" PRIu32 "\nhash       %016" PRIx64 "\n", h->log.ticks_n, h->log.hash);
@@ -217,13 +212,24 @@ int sim_device_command(int argc, const char **argv)
          "refuse rates that a line of so many baud could not carry (0: it carries all)", "BAUD"},
         {"rate", 'r', POPT_ARG_STRING, NULL, OPTION_RATE, "ticks a second (1000)", "HZ"},
         {"inject", 0, POPT_ARG_STRING, NULL, OPTION_INJECT,
-         "let something go wrong: noise, drop, stall, servo, estop, cut, clock",
+         "let something go wrong: noise, drop, stall, estop, cut, clock; of servos: servo, unplug "
+         "(ID), lose, garble (share), slow (s)",
          "KIND@START[+SECONDS][:AMOUNT]"},
         {"seconds", 0, POPT_ARG_STRING, NULL, OPTION_SECONDS,
          "end after so long on the device's clock", "S"},
+        {"servos", 0, POPT_ARG_STRING, NULL, OPTION_SERVOS,
+         "what hangs on it: smart servos with ids 1, 2, ..., hobby servos, or nothing (bus)",
+         "bus|pwm|none"},
+        {"servo-baud", 0, POPT_ARG_STRING, NULL, OPTION_SERVO_BAUD,
+         "what the smart servos are set to (1000000)", "BAUD"},
+        {"factory", 0, POPT_ARG_NONE, NULL, OPTION_FACTORY,
+         "one smart servo as it comes from the factory: id 1, 57600 baud", NULL},
+        {"echo", 0, POPT_ARG_NONE, NULL, OPTION_ECHO, "the device hears itself on the servo bus",
+         NULL},
         OPTIONS_END,
     };
-    choices c = {.links_n = 4, .rate_hz = 1000.0};
+    choices c = {
+        .links_n = 4, .rate_hz = 1000.0, .servos = {.kind = SERVOS_BUS, .baud = HOST_SERVOS_BAUD}};
     injection faults = {.faults_n = 0};
     argv[0] = "limber-sim device"; /* what the help calls it */
     poptContext context = poptGetContext(argv[0], argc, argv, table, 0);

@@ -5,6 +5,9 @@
 
 #include "sim.h"
 
+enum { BUS_BAUD_MIN = 9600, BUS_BAUD_MAX = 4500000 };
+#define HOBBY_US_PER_RAD 636.6198f
+
 static uint32_t now_us(void *context)
 {
     const host_device *h = context;
@@ -40,29 +43,79 @@ static uint32_t no_count(void *context)
     return 0;
 }
 
-static void servo_power(void *context, bool on)
+static void servo_supply(void *context, bool on)
 {
     host_device *h = context;
     h->plant.powered = on;
 }
 
-static void servo_write(void *context, const float *goals_rad, int servos_n)
+/* --- hobby servos: 500 ... 2500 us are half a turn, whatever the device believes ------------------------- */
+
+static bool pwm_start(void *context, float rate_hz)
+{
+    (void)context;
+    return rate_hz >= 50.0f && rate_hz <= 333.0f;
+}
+
+static void pwm_pulse(void *context, int channel, uint32_t width_us)
 {
     host_device *h = context;
-    servo_plant_write(&h->plant, goals_rad, servos_n);
+    if (h->servos.kind == SERVOS_PWM && channel >= 0 && channel < HAL_PWM_CHANNELS_N) {
+        servo_plant_torque(&h->plant, channel, width_us > 0);
+        servo_plant_goal(&h->plant, channel, ((float)width_us - 1500.0f) / HOBBY_US_PER_RAD);
+    }
 }
 
-static bool servo_read(void *context, float *positions_rad, int servos_n)
+static void pwm_stop(void *context)
+{
+    for (int channel = 0; channel < HAL_PWM_CHANNELS_N; channel++) {
+        pwm_pulse(context, channel, 0);
+    }
+}
+
+/* --- the servo bus -------------------------------------------------------------------------------------- */
+
+static bool bus_start(void *context, uint32_t baud)
+{
+    host_device *h = context;
+    const bool can = baud >= BUS_BAUD_MIN && baud <= BUS_BAUD_MAX;
+    if (can) {
+        bus_wire_start(&h->bus.wire, baud);
+    }
+    return can;
+}
+
+static bool bus_sending(void *context)
 {
     const host_device *h = context;
-    memcpy(positions_rad, h->plant.positions_rad, (size_t)servos_n * sizeof *positions_rad);
+    return bus_wire_sending(&h->bus.wire, h->elapsed_s);
+}
+
+static bool bus_write(void *context, const uint8_t *bytes, size_t bytes_n)
+{
+    host_device *h = context;
+    return bytes_n <= HAL_BUS_PACKET_MAX_BYTES && !bus_sending(h) &&
+           bus_wire_send(&h->bus.wire, bytes, bytes_n, h->elapsed_s);
+}
+
+static size_t bus_read(void *context, uint8_t *bytes, size_t room)
+{
+    host_device *h = context;
+    return bus_wire_read(&h->bus.wire, bytes, room, h->elapsed_s);
+}
+
+static void bus_abort(void *context)
+{
+    host_device *h = context;
+    bus_wire_abort(&h->bus.wire, h->elapsed_s);
+}
+
+/* --- the rest ------------------------------------------------------------------------------------------- */
+
+static bool stack_intact(void *context)
+{
+    (void)context;
     return true;
-}
-
-static bool servo_healthy(void *context)
-{
-    const host_device *h = context;
-    return !h->plant.failed;
 }
 
 static bool estop_pressed(void *context)
@@ -107,7 +160,8 @@ static void reboot(void *context)
     h->rebooting = true;
 }
 
-void host_device_start(host_device *h, float tick_s, int links_n)
+/* Program and processor start; the world is as it was. */
+static void boot(host_device *h, float tick_s, int links_n)
 {
     h->hal = (hal){.context = h,
                    .now_us = now_us,
@@ -116,10 +170,16 @@ void host_device_start(host_device *h, float tick_s, int links_n)
                    .line_free = line_free_hal,
                    .line_overruns = no_count,
                    .line_framing_errors = no_count,
-                   .servo_power = servo_power,
-                   .servo_write = servo_write,
-                   .servo_read = servo_read,
-                   .servo_healthy = servo_healthy,
+                   .servo_supply = servo_supply,
+                   .pwm_start = pwm_start,
+                   .pwm_pulse = pwm_pulse,
+                   .pwm_stop = pwm_stop,
+                   .bus_start = bus_start,
+                   .bus_write = bus_write,
+                   .bus_sending = bus_sending,
+                   .bus_read = bus_read,
+                   .bus_abort = bus_abort,
+                   .stack_intact = stack_intact,
                    .estop_pressed = estop_pressed,
                    .flash_sector_size = sector_size,
                    .flash_read = flash_read,
@@ -135,17 +195,32 @@ void host_device_start(host_device *h, float tick_s, int links_n)
                                 .name = "limber-sim",
                                 .build = SIM_VERSION,
                                 .links_n = links_n,
+                                .servos_kind = (uint8_t)h->servos.kind,
                                 .watcher = body_log_watcher(&h->log)};
     h->boot.clock_kind = CLOCK_HOST;
     h->boot.estop_ignored = true;
-    h->plant.powered = false;
+    servo_supply(h, false);
+    pwm_stop(h);
+    bus_abort(h);
     device_init(&h->device, &h->hal, &h->config, &h->boot);
+}
+
+void host_device_start(host_device *h, float tick_s, int links_n)
+{
+    host_servos *servos = &h->servos;
+    if (servos->baud == 0) {
+        *servos = (host_servos){.kind = SERVOS_BUS, .baud = HOST_SERVOS_BAUD};
+    }
+    const int servos_n = servos->servos_n > 0 ? servos->servos_n : 2 * links_n;
+    bus_model_init(&h->bus, &h->plant, servos->kind == SERVOS_BUS ? servos_n : 0, servos->baud);
+    h->bus.wire.echo = servos->echo;
+    boot(h, tick_s, links_n);
 }
 
 /* What the script says goes wrong beside the line. */
 static void inject(host_device *h)
 {
-    h->plant.failed = injection_now(&h->injection, INJECT_SERVO, h->elapsed_s) != NULL;
+    bus_model_inject(&h->bus, &h->injection, h->elapsed_s);
     injected_fault *clock = injection_now(&h->injection, INJECT_CLOCK, h->elapsed_s);
     if (clock != NULL && !clock->done) {
         clock->done = true;
@@ -166,11 +241,12 @@ void host_device_tick(host_device *h)
     line_flush(&h->line);
     servo_plant_tick(&h->plant, h->config.tick_s);
     h->elapsed_s += (double)h->config.tick_s;
+    bus_model_run(&h->bus, h->elapsed_s);
     if (h->rebooting) { /* power and program start afresh; flash and the world stay */
         h->rebooting = false;
         h->boot.cause = h->flash.cut ? HAL_RESET_POWER : HAL_RESET_SOFTWARE;
         h->flash.cut = false;
         h->flash.writes_left = -1;
-        host_device_start(h, h->config.tick_s, h->config.links_n);
+        boot(h, h->config.tick_s, h->config.links_n);
     }
 }

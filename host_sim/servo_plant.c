@@ -11,10 +11,29 @@ void servo_plant_init(servo_plant *plant, int delay_ticks, float speed_rad_s)
     plant->speed_rad_s = speed_rad_s;
 }
 
-void servo_plant_write(servo_plant *plant, const float *goals_rad, int servos_n)
+void servo_plant_torque(servo_plant *plant, int servo, bool on)
 {
-    plant->servos_n = servos_n;
-    memcpy(plant->newest_rad, goals_rad, (size_t)servos_n * sizeof *goals_rad);
+    if (on && !plant->torque[servo]) {
+        for (int i = 0; i < PLANT_DELAY_MAX_TICKS; i++) {
+            plant->goals_rad[i][servo] = plant->positions_rad[servo];
+        }
+        plant->newest_rad[servo] = plant->positions_rad[servo];
+    }
+    plant->torque[servo] = on;
+}
+
+void servo_plant_goal(servo_plant *plant, int servo, float goal_rad)
+{
+    plant->newest_rad[servo] = goal_rad;
+}
+
+bool servo_plant_has_torque(const servo_plant *plant)
+{
+    bool any = false;
+    for (int i = 0; i < SERVO_COUNT_MAX; i++) {
+        any = any || plant->torque[i];
+    }
+    return any && plant->powered;
 }
 
 void servo_plant_tick(servo_plant *plant, float tick_s)
@@ -24,8 +43,8 @@ void servo_plant_tick(servo_plant *plant, float tick_s)
     const long heard = plant->tick > plant->delay_ticks ? plant->tick - plant->delay_ticks : 0;
     const float *goals = plant->goals_rad[heard % PLANT_DELAY_MAX_TICKS];
     const float reach = plant->speed_rad_s * tick_s;
-    for (int i = 0; i < plant->servos_n && plant->powered && !plant->failed; i++) {
-        const float way = goals[i] - plant->positions_rad[i];
+    for (int i = 0; i < SERVO_COUNT_MAX && plant->powered; i++) {
+        const float way = plant->torque[i] ? goals[i] - plant->positions_rad[i] : 0.0f;
         plant->positions_rad[i] += fminf(fmaxf(way, -reach), reach);
     }
     plant->tick++;

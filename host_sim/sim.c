@@ -11,6 +11,7 @@ static const struct {
 } COMMANDS[] = {
     {"replay", sim_replay_command, "bend a rod along a recorded track; summary, CSV, report, hash"},
     {"device", sim_device_command, "be the board: a device on a PTY or TCP port, in real time"},
+    {"servos", sim_servos_command, "be smart servos on a bus, for an emulated board"},
     {"params", sim_params_command, "print a complete, commented parameter file"},
     {"tracks", sim_tracks_command, "write the paper's five motions and damaged variants of them"},
 };

@@ -29,5 +29,6 @@ int sim_replay_command(int argc, const char **argv);
 int sim_params_command(int argc, const char **argv);
 int sim_tracks_command(int argc, const char **argv);
 int sim_device_command(int argc, const char **argv);
+int sim_servos_command(int argc, const char **argv);
 
 #endif

@@ -34,6 +34,7 @@ host|python3|command -v python3|runs the test oracles
 host|python3-numpy|python3 -c 'import numpy'|runs the test oracles
 target|gcc-arm-none-eabi|command -v arm-none-eabi-gcc|compiles the firmware
 target|libnewlib-arm-none-eabi|arm-none-eabi-gcc --specs=nano.specs -E -xc /dev/null|C library of the firmware
+firmware|python3|command -v python3|checks the firmware's image
 clang|clang|command -v clang|second compiler, fuzzing
 clang|lld|command -v wasm-ld|links WebAssembly
 clang|nodejs|command -v node|runs WebAssembly

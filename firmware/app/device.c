@@ -253,8 +253,10 @@ static void check_time(device *d)
     d->ticks_timed_n++;
     d->tick_worst_us = taken_us > d->tick_worst_us ? taken_us : d->tick_worst_us;
     d->tick_max_us = taken_us > d->tick_max_us ? taken_us : d->tick_max_us;
-    if ((float)taken_us > d->config.tick_s * 1e6f) {
-        d->deadline_misses++;
+    const bool late = (float)taken_us > d->config.tick_s * 1e6f;
+    d->deadline_misses += late;
+    if (late &&
+        d->boot.clock_kind != CLOCK_EMULATOR) { /* whose clock runs on while its host is busy */
         faults_raise(&d->faults, FAULT_DEADLINE);
     } else {
         d->checked_in |= CHECKED_DEADLINE;

@@ -25,12 +25,14 @@ typedef enum {
     SERVO_TROUBLE_SILENT, /* does not answer */
     SERVO_TROUBLE_GARBLED, /* bytes come, but no whole packet: another baud rate, or two with one id */
     SERVO_TROUBLE_STATUS, /* refused an instruction: detail is its status error, e-Manual Protocol 2.0, 4.3 */
-    SERVO_TROUBLE_HARDWARE,  /* reports a hardware error: detail is its Hardware Error Status */
-    SERVO_TROUBLE_MODEL,     /* not one of the X series: detail is its model number */
-    SERVO_TROUBLE_BAUD,      /* the board, or a servo, cannot make that rate */
-    SERVO_TROUBLE_CHANNEL,   /* there is no such PWM channel */
-    SERVO_TROUBLE_COUNT,     /* more servos than channels, or than fit one packet */
-    SERVO_TROUBLE_READ_BACK, /* took a value and holds another */
+    SERVO_TROUBLE_HARDWARE, /* reports a hardware error: detail is its Hardware Error Status */
+    SERVO_TROUBLE_MODEL,    /* not one of the X series: detail is its model number */
+    SERVO_TROUBLE_BAUD,     /* the board, or a servo, cannot make that rate */
+    SERVO_TROUBLE_CHANNEL,  /* there is no such PWM channel */
+    SERVO_TROUBLE_COUNT, /* none, more than there are channels, or more than the baud rate can serve in time */
+    SERVO_TROUBLE_READ_BACK, /* took a value and holds another: detail is that */
+    SERVO_TROUBLE_MODE,      /* does not follow goal positions: detail is its Operating Mode */
+    SERVO_TROUBLE_TAKEN,     /* another servo has the new id */
     SERVO_TROUBLES_N,
 } servo_trouble_kind;
 

@@ -33,8 +33,8 @@ typedef enum {
     SERVOS_OFF,       /* no supply, no torque */
     SERVOS_PREPARING, /* supply, no torque: being looked for */
     SERVOS_PREPARED,  /* supply, no torque: all found, positions read */
-    SERVOS_FAILED,    /* no supply: preparing came to nothing, trouble tells why */
-    SERVOS_ON,        /* torque, or on the way to it */
+    SERVOS_FAILED, /* no supply: one was not found, or lost again before torque; trouble tells why */
+    SERVOS_ON,     /* torque, or on the way to it */
     SERVOS_SERVICE, /* supply, no torque but for a test: a request is under way, or was less than 10 s ago */
 } servos_state;
 
@@ -43,10 +43,14 @@ typedef struct {
     const hal *hal;
     servos_config config;
     servos_state state;
-    servo_trouble trouble; /* the last; error SERVO_TROUBLE_NONE: none since servos_prepare */
+    servo_trouble trouble; /* the last; kind SERVO_TROUBLE_NONE: none since servos_prepare */
     servo_bus bus;
     servo_pwm pwm;
-    uint32_t since_us; /* of the state */
+    uint32_t since_us;   /* of the state; in SERVICE: of the last request's end */
+    uint32_t powered_us; /* of SERVICE */
+    servo_request request;
+    servo_request_state answer;
+    servo_info info;
 } servos;
 
 /* Shortest time between two sets of goals, s: what the bus can carry beside one question to a servo, or a
@@ -56,7 +60,7 @@ float servos_period_s(const servos_config *config);
 /* Whether these can be driven at all; *trouble (may be NULL) says why not. */
 bool servos_check(const servos_config *config, servo_trouble *trouble);
 
-/* Off, and from now on those of *config. The hal must outlive *s. */
+/* Off, and from now on those of *config. The hal must outlive *s, which must not be moved or copied afterwards. */
 void servos_configure(servos *s, const hal *hal, const servos_config *config);
 
 /* Starts preparing; servos_tick goes on with it. Nothing in PREPARING, PREPARED and ON. */
@@ -82,8 +86,13 @@ void servos_tick(servos *s, uint32_t now_us);
  * says which. True in all other states. */
 bool servos_healthy(const servos *s);
 
+/* In ON: true from the tick in which goals are followed; before that torque is on its way, and goals wait. */
+bool servos_started(const servos *s);
+
 /* One request to one servo, while OFF, FAILED or SERVICE: supply on, and off again 10 s after the last. False if one
- * is under way or the state does not allow it. */
+ * is under way, the state does not allow it, it makes no sense (an id beyond SERVO_ID_MAX, a turn that is no number), or
+ * servos of this kind know no such thing: PWM channels only PING and TEST. Turns are clamped to
+ * +-SERVO_BUS_TURN_MAX_RAD. */
 bool servos_request(servos *s, const servo_request *request, uint32_t now_us);
 
 /* What became of it: SERVO_REQUEST_BUSY, DONE (then *info is filled in) or FAILED (then trouble). */

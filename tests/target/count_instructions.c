@@ -1,18 +1,12 @@
-/* count_instructions.c - what a step costs on the Cortex-M4F, in instructions, exactly.
+/* count_instructions.c - what the parts of the rod cost on the Cortex-M4F: see cost.h.
  *
- * QEMU with `-icount shift=0` advances virtual time by 1 ns an instruction, and its TIM2, left at its
- * reset prescaler, counts that nanosecond by nanosecond: the counter's difference is the number of
- * instructions, the same in every run. Prints `part N count` lines, which cost.py holds against
- * tests/data/instruction_counts.txt.
+ * Prints `part N count` lines, which cost.py holds against tests/data/instruction_counts.txt. The device around the
+ * rod is count_tick.c's.
  */
 #include <stdint.h>
-#include <stdio.h>
 
+#include "cost.h"
 #include "rod.h"
-
-#define TIM2_CR1 (*(volatile uint32_t *)0x40000000) /* RM0090, 18.4.1 */
-#define TIM2_CNT (*(volatile uint32_t *)0x40000024) /* 18.4.10 */
-#define TIM2_ARR (*(volatile uint32_t *)0x4000002C) /* 18.4.12 */
 
 static rod subject;
 static rod_params params;
@@ -32,9 +26,9 @@ static void no_force(const vec3 *nodes_m, int nodes_n, vec3 *forces_newton, void
     (void)nodes_m, (void)nodes_n, (void)forces_newton, (void)context;
 }
 
-typedef enum { NOTHING, STEP, STEP_WITH_FORCE, SOLVE2, SOLVE3, NODES, SET_PARAMS, PARTS_N } part;
-static const char *const PART_NAMES[PARTS_N] = {"nothing", "step",  "step_with_force", "solve2",
-                                                "solve3",  "nodes", "set_params"};
+typedef enum { STEP, STEP_WITH_FORCE, SOLVE2, SOLVE3, NODES, SET_PARAMS, PARTS_N } part;
+static const char *const PART_NAMES[PARTS_N] = {"step",   "step_with_force", "solve2",
+                                                "solve3", "nodes",           "set_params"};
 
 static void do_part(part which, const rod_pose *base)
 {
@@ -52,16 +46,14 @@ static void do_part(part which, const rod_pose *base)
     case NODES:
         rod_nodes(&subject, nodes);
         break;
-    case SET_PARAMS:
+    default:
         rod_set_params(&subject, &params, NULL);
         break;
-    default:
-        break; /* what measuring itself costs */
     }
 }
 
-/* The dearest of a hundred ticks of a moving hand. */
-static uint32_t count(part which, int links_n, float smoothing, int hold_n)
+/* A hundred ticks of a moving hand. */
+static void count(const char *name, part which, int links_n, float smoothing, int hold_n)
 {
     rod_params_defaults(&params);
     params.links_n = links_n;
@@ -72,36 +64,33 @@ static uint32_t count(part which, int links_n, float smoothing, int hold_n)
     }
     rod_init(&subject, &params, NULL);
     rod_set_force(&subject, which == STEP_WITH_FORCE ? no_force : NULL, NULL);
-    uint32_t dearest = 0;
     for (int tick = 0; tick < 102; tick++) {
         const rod_pose base = hand_at(tick);
-        const uint32_t start = TIM2_CNT;
-        do_part(which, &base);
-        const uint32_t taken = TIM2_CNT - start;
-        if (tick >= 2 && taken > dearest) {
-            dearest = taken;
+        if (tick < 2) {
+            rod_step(&subject, &base); /* the first two only take in the motion */
+            continue;
         }
+        cost_begin();
+        do_part(which, &base);
+        cost_end();
         if (which != STEP && which != STEP_WITH_FORCE) {
             rod_step(&subject, &base);
         }
     }
-    return dearest;
+    cost_tell(name, links_n);
 }
 
 int main(void)
 {
     static const int LINKS_N[] = {4, 10, 20, 50};
-    TIM2_ARR = UINT32_MAX;
-    TIM2_CR1 = 1;
-    const uint32_t nothing = count(NOTHING, 4, 0.0f, 1);
+    cost_start();
     for (int i = 0; i < 4; i++) {
         const int n = LINKS_N[i];
-        for (part which = STEP; which < PARTS_N; which++) {
-            printf("%s %d %lu\n", PART_NAMES[which], n,
-                   (unsigned long)(count(which, n, 50.0f, 1) - nothing));
+        for (part which = 0; which < PARTS_N; which++) {
+            count(PART_NAMES[which], which, n, 50.0f, 1);
         }
-        printf("step_no_smoothing %d %lu\n", n, (unsigned long)(count(STEP, n, 0.0f, 1) - nothing));
-        printf("step_hold_2 %d %lu\n", n, (unsigned long)(count(STEP, n, 50.0f, 2) - nothing));
+        count("step_no_smoothing", STEP, n, 0.0f, 1);
+        count("step_hold_2", STEP, n, 50.0f, 2);
     }
     return 0;
 }

@@ -35,6 +35,7 @@ int limber_arm_command(int argc, const char **argv);
 int limber_disarm_command(int argc, const char **argv);
 int limber_estop_command(int argc, const char **argv);
 int limber_clear_command(int argc, const char **argv);
+int limber_servo_command(int argc, const char **argv);
 int limber_record_command(int argc, const char **argv);
 int limber_latency_command(int argc, const char **argv);
 

@@ -21,6 +21,7 @@ static const struct {
     {"disarm", limber_disarm_command, "take the torque away"},
     {"estop", limber_estop_command, "torque off within one tick, latched"},
     {"clear", limber_clear_command, "leave FAULT or ESTOP for DISARMED"},
+    {"servo", limber_servo_command, "find and set up servos, one by one: scan, id, baud, test"},
     {"record", limber_record_command, "write the angles that the device sends as CSV"},
     {"latency", limber_latency_command, "measure pose -> angles, split into line, solve and reply"},
 };

@@ -12,7 +12,7 @@ enum {
     REPEAT_US = 50000,
     REPEATS_N = 3,
     ANSWER_MAX_US = 500000,
-    SAVE_MAX_US = 3000000, /* flash is slow */
+    LONG_ANSWER_MAX_US = 5000000,
     SYNC_US = 1000000,
     WAIT_MAX_US = 50000, /* so that an interrupt between two waits is not slept over */
 };
@@ -67,13 +67,28 @@ void session_ask(session *s, const message *request)
     (void)session_send(s, &s->asked);
 }
 
+/* Flash and servos are slow: the answer comes when it is done. Repeats in between do no harm. */
+static uint64_t answer_max_us(uint8_t asked)
+{
+    switch (asked) {
+    case MESSAGE_ARM:
+    case MESSAGE_PARAM_SAVE:
+    case MESSAGE_SERVO_ASSIGN:
+    case MESSAGE_SERVO_PING:
+    case MESSAGE_SERVO_SET_BAUD:
+    case MESSAGE_SERVO_TEST:
+        return LONG_ANSWER_MAX_US;
+    default:
+        return ANSWER_MAX_US;
+    }
+}
+
 static void repeat_request(session *s, uint64_t now_us)
 {
     if (s->request != REQUEST_WAITING) {
         return;
     }
-    const uint64_t most_us = s->asked.type == MESSAGE_PARAM_SAVE ? SAVE_MAX_US : ANSWER_MAX_US;
-    if (now_us - s->asked_us >= most_us) {
+    if (now_us - s->asked_us >= answer_max_us(s->asked.type)) {
         s->request = REQUEST_UNANSWERED;
     } else if (s->asked_n <= REPEATS_N && now_us - s->repeated_us >= REPEAT_US) {
         s->asked_n++;
@@ -90,6 +105,7 @@ static bool is_answer(const message *m, uint16_t *id)
     case MESSAGE_PARAM_INFO:
     case MESSAGE_PARAM_VALUE:
     case MESSAGE_PRESET_INFO:
+    case MESSAGE_SERVO_INFO:
     case MESSAGE_STATS:
         memcpy(id, (const char *)m + messages_info(m->type)->fields[0].offset, sizeof *id);
         return *id != 0;
@@ -110,6 +126,8 @@ static bool fits(const message *answer, uint8_t asked)
         return answer->type == MESSAGE_PARAM_VALUE;
     case MESSAGE_PRESET_LIST:
         return answer->type == MESSAGE_PRESET_INFO;
+    case MESSAGE_SERVO_PING:
+        return answer->type == MESSAGE_SERVO_INFO;
     default:
         return answer->type == MESSAGE_ACK;
     }

@@ -21,9 +21,9 @@
 typedef enum {
     REQUEST_NONE,
     REQUEST_WAITING,
-    REQUEST_DONE,      /* session.answer has the ACK, or what was asked for */
-    REQUEST_REFUSED,   /* session.answer has the NACK */
-    REQUEST_UNANSWERED /* sent four times, 50 ms apart, and waited for half a second */
+    REQUEST_DONE,    /* session.answer has the ACK, or what was asked for */
+    REQUEST_REFUSED, /* session.answer has the NACK */
+    REQUEST_UNANSWERED /* sent four times, 50 ms apart, and waited for half a second; 5 s for flash and servos */
 } request_state;
 
 /* Every good message of the device that is not an answer; before the loop goes on. */

@@ -1,4 +1,7 @@
-/* startup.c - from reset to main on a Cortex-M4F (ARMv7-M ARM, B1.5.5 reset, B1.4.7 CPACR). */
+/* startup.c - from reset to main on a Cortex-M4F (ARMv7-M ARM, B1.5.5 reset, B1.4.7 CPACR).
+ *
+ * The firmware and the test programs start here alike. Handlers are weak: who has a better one defines it.
+ */
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +11,10 @@ extern uint32_t data_start[], data_end[], data_image[], bss_start[], bss_end[], 
 int main(int argc, char **argv);
 void reset_handler(void);
 void fault_handler(void);
+void systick_handler(void);
+void usart1_handler(void);
+void usart2_handler(void);
+void usart6_handler(void);
 
 /* The program's arguments, and whatever must wake before main: weak, so that a program which runs on an
  * emulator and has a host to talk to brings its own. */
@@ -44,22 +51,32 @@ static void start(void)
     exit(main(argc, argv));
 }
 
-void fault_handler(void)
+__attribute__((weak)) void fault_handler(void)
 {
     _Exit(70); /* EX_SOFTWARE: ends an emulated program instead of hanging it */
 }
 
-/* The 16 of the core (ARMv7-M ARM, table B1-4); no peripheral interrupt is enabled yet. */
-__attribute__((section(".vectors"), used)) static const uintptr_t vectors[16] = {
-    (uintptr_t)stack_top,            /*  0: main stack */
-    (uintptr_t)reset_handler,        /*  1 */
-    (uintptr_t)fault_handler,        /*  2: NMI */
-    (uintptr_t)fault_handler,        /*  3: hard fault */
-    (uintptr_t)fault_handler,        /*  4: memory */
-    (uintptr_t)fault_handler,        /*  5: bus */
-    (uintptr_t)fault_handler,        /*  6: usage */
-    [11] = (uintptr_t)fault_handler, /* SVCall */
-    [12] = (uintptr_t)fault_handler, /* debug monitor */
-    [14] = (uintptr_t)fault_handler, /* PendSV */
-    [15] = (uintptr_t)fault_handler, /* SysTick */
+/* An interrupt that nobody asked for. Registers and stack reach fault_handler as they are. */
+__attribute__((naked, used)) static void unexpected(void)
+{
+    __asm__ volatile("b fault_handler");
+}
+
+__attribute__((weak, alias("unexpected"))) void systick_handler(void);
+__attribute__((weak, alias("unexpected"))) void usart1_handler(void);
+__attribute__((weak, alias("unexpected"))) void usart2_handler(void);
+__attribute__((weak, alias("unexpected"))) void usart6_handler(void);
+
+/* The 16 of the core (ARMv7-M ARM, table B1-4), then the chip's 82 (RM0090, table 61). */
+__attribute__((section(".vectors"), used)) static const uintptr_t vectors[16 + 82] = {
+    (uintptr_t)stack_top,                  /* 0: main stack */
+    (uintptr_t)reset_handler,              /* 1 */
+    [2 ... 14] = (uintptr_t)fault_handler, /* NMI, faults, calls: none is asked for */
+    [15] = (uintptr_t)systick_handler,
+    [16 ... 16 + 36] = (uintptr_t)fault_handler,
+    [16 + 37] = (uintptr_t)usart1_handler,
+    [16 + 38] = (uintptr_t)usart2_handler,
+    [16 + 39 ... 16 + 70] = (uintptr_t)fault_handler,
+    [16 + 71] = (uintptr_t)usart6_handler,
+    [16 + 72 ... 16 + 81] = (uintptr_t)fault_handler,
 };

@@ -1,0 +1,64 @@
+"""firmware/boards/stm32f405/COST.md, made of the counts."""
+import pathlib
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "firmware" / "boards" / "stm32f405" / "COST.md"
+CORE_HZ = 168e6
+LINKS_N = (4, 10, 20, 50)
+HEAD = """# What it costs on the Cortex-M4F
+
+Made by `tests/target/cost.py --update`; do not edit. Instructions are counted, exactly, under QEMU, the dearest of a
+hundred ticks (compiler: {compiler}). Cycles are estimated from which instructions they are (the rules and their sources:
+`tests/target/cycles.py`): the first number with all of flash in the chip's cache, the second as if no jump and no
+constant ever were. No board has measured them yet.
+"""
+PARTS = [  # name in the counts, what it is
+    ("decode", "a POSE from bytes to message"),
+    ("pose_input", "the pose judged, and the base of this tick"),
+    ("step", "the rod: one step, smoothing on"),
+    ("blend_limits", "blend, and the limits of all servos"),
+    ("servo_encode", "goals of all servos as one Sync Write"),
+    ("angles_reply", "ANGLES packed, framed and queued"),
+    ("tick", "**the whole tick**, with all of these"),
+    ("tick_full", "the same, with HEARTBEAT and STATS as well"),
+]
+MORE = [
+    ("step_no_smoothing", "the rod without smoothing"),
+    ("step_hold_2", "the rod in two steps a tick"),
+    ("step_with_force", "the rod with a force on it"),
+    ("set_params", "other parameters"),
+]
+
+
+def table(counts, parts):
+    yield "| | " + " | ".join(f"N = {n}" for n in LINKS_N) + " |"
+    yield "|---|" + "---|" * len(LINKS_N)
+    for part, meaning in parts:
+        row = [counts.get((part, n)) for n in LINKS_N]
+        if any(row):
+            yield f"| {meaning} | " + " | ".join(f"{c.instructions:,} · {c.cycles:,} … {c.cold:,}" if c else ""
+                                                 for c in row) + " |"
+
+
+def time(counts):
+    """One sentence a length of rod."""
+    for n in LINKS_N:
+        if tick := counts.get(("tick", n)):
+            low, high = tick.cycles / CORE_HZ, tick.cold / CORE_HZ
+            yield (f"- N = {n}: {low * 1e6:.0f} … {high * 1e6:.0f} µs of the 1,000 of a tick at {CORE_HZ / 1e6:.0f} MHz, "
+                   f"{low * 1e5:.0f} … {high * 1e5:.0f} %")
+
+
+def interrupts(counts):
+    names = sorted(part for part, _ in counts if part.startswith("interrupt_"))
+    if names:
+        yield from ("", "## Interrupts, beside that", "", "On average, each time it strikes; entry and return, 12 cycles "
+                    "each where nothing waits (TRM 3.9), not included.", "", "| | instructions · cycles |", "|---|---|")
+        for name in names:
+            c = next(count for (part, _), count in counts.items() if part == name)
+            yield f"| {name.removeprefix('interrupt_')} | {c.instructions:,} · {c.cycles:,} … {c.cold:,} |"
+
+
+def write(counts, compiler):
+    lines = [HEAD.format(compiler=compiler), "## One tick: instructions · cycles", "", *table(counts, PARTS), "",
+             *time(counts), *interrupts(counts), "", "## The rod alone", "", *table(counts, MORE)]
+    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -1,0 +1,103 @@
+"""What the tests of the booted image share: a board for each test, the PC tool, a hand that moves."""
+import argparse
+import contextlib
+import json
+import math
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import emulated
+import line_log
+
+choices = None  # the arguments of the test program
+
+
+def float32(value=0.0, bits=None):
+    packed = struct.pack("<f", value) if bits is None else struct.pack("<I", bits)
+    return struct.unpack("<f", packed)[0]
+
+
+class FirmwareCase(unittest.TestCase):
+    def setUp(self):
+        self.stack = contextlib.ExitStack()
+        self.addCleanup(self.stack.close)
+        self.folder = pathlib.Path(self.stack.enter_context(tempfile.TemporaryDirectory()))
+        self.board = self.line = None
+
+    def boot(self, **how):
+        """A board that has told HELLO and BOOT_REPORT; self.line overhears it."""
+        self.board = self.stack.enter_context(emulated.Board(choices.qemu, choices.elf, self.folder, held=True, **how))
+        self.line = line_log.Line(self.board.connect())
+        self.stack.callback(self.line.close)
+        with self.board.debugger():
+            pass  # with somebody to hear it, now it may go
+        self.line.wait_for(line_log.BOOT_REPORT)
+
+    def reboot(self):
+        self.stack.close()
+        self.setUp()
+        self.boot()
+
+    def run_program(self, *command, text=None):
+        return subprocess.run([str(word) for word in command], input=text, capture_output=True, text=True, check=True,
+                              timeout=60).stdout
+
+    def limber(self, command, *words):
+        """(exit code, stdout, stderr)"""
+        done = subprocess.run([choices.limber, command, *map(str, words), "--port", f"tcp:127.0.0.1:{self.line.port}"],
+                              capture_output=True, text=True, timeout=120, check=False)
+        return done.returncode, done.stdout, done.stderr
+
+    def good(self, command, *words):
+        code, out, err = self.limber(command, *words)
+        self.assertEqual(code, 0, f"limber {command} {words}: {err}{out}\n{self.board.complaints()}")
+        return out
+
+    def good_json(self, command, *words):
+        return json.loads(self.good(command, *words, "--json"))
+
+    def track(self, seconds=3.0, rate_hz=100.0):
+        """A TUM file of a hand that swings and turns."""
+        path = self.folder / "track.txt"
+        lines = ["# made by a test"]
+        for n in range(int(seconds * rate_hz)):
+            t = n / rate_hz
+            half = 0.3 * math.sin(4 * t)
+            lines.append(f"{100 + t:.6f} {0.15 * math.sin(5 * t):.9f} {0.1 * math.sin(3 * t):.9f} {0.05 * math.sin(7 * t):.9f} "
+                         f"0 {math.sin(half):.9f} 0 {math.cos(half):.9f}")
+        path.write_text("\n".join(lines) + "\n", encoding="ascii")
+        return path
+
+    def start_stream(self, seconds=60.0):
+        """limber stream as a process of its own, ended with the test."""
+        tool = subprocess.Popen([choices.limber, "stream", str(self.track(seconds)), "--port",
+                                 f"tcp:127.0.0.1:{self.line.port}"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        self.stack.callback(tool.stdout.close)
+        self.stack.callback(tool.wait)
+        self.stack.callback(tool.kill)
+        return tool
+
+    def wait_for_state(self, name, after=0, seconds=10):
+        return self.line.wait_for(line_log.HEARTBEAT, lambda p: line_log.heartbeat(p)["state"] == name, seconds, after)
+
+    @staticmethod
+    def states_in_order(states):
+        """Names of the states of (tick, state), each once for each time it was entered."""
+        names = [line_log.STATES[state] for _, state in states]
+        return [name for name, before in zip(names, [None, *names]) if name != before]
+
+
+def main():
+    global choices
+    parser = argparse.ArgumentParser()
+    for name in ("qemu", "elf", "limber", "sim"):
+        parser.add_argument(f"--{name}", required=True)
+    parser.add_argument("--replay", help="replay_pose_log")
+    parser.add_argument("--build", help="where the image's objects and their call graph are")
+    parser.add_argument("--shared-tracks", type=pathlib.Path, default=pathlib.Path("/nowhere"))
+    choices, rest = parser.parse_known_args()
+    unittest.main(argv=[sys.argv[0], *rest], verbosity=2)

@@ -1,0 +1,173 @@
+"""What a device says on its line, overheard: a relay between a PC tool and the device that keeps all frames.
+
+The frame's layout is PROTOCOL.md's, read independently of the code under test.
+"""
+import select
+import socket
+import struct
+import threading
+import time
+
+HELLO, HEARTBEAT, LOG, ANGLES, POSE_LOG, BOOT_REPORT = 0x01, 0x06, 0x09, 0x11, 0x13, 0x46
+POSES, ARM, DISARM, ESTOP, ACK, NACK, FAULT = 0x10, 0x20, 0x21, 0x22, 0x40, 0x41, 0x45
+STATES = "BOOT SELFTEST DISARMED ARMING ACTIVE HOLD RELAX LIMP FAULT ESTOP".split()
+
+
+def crc_table():
+    for byte in range(256):
+        crc = byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+        yield crc
+
+
+CRC_TABLE = list(crc_table())
+
+
+def crc32c(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc = crc >> 8 ^ CRC_TABLE[(crc ^ byte) & 0xFF]
+    return crc ^ 0xFFFFFFFF
+
+
+def cobs_encode(body):
+    out, block = bytearray(), bytearray()
+    for byte in body + b"\0":
+        if byte:
+            block.append(byte)
+        if not byte or len(block) == 254:
+            out += bytes([len(block) + 1]) + block
+            block.clear()
+    return bytes(out)
+
+
+def cobs_decode(data):
+    out, at = bytearray(), 0
+    while at < len(data):
+        code = data[at]
+        out += data[at + 1:at + code]
+        at += code
+        if code < 255 and at < len(data):
+            out.append(0)
+    return bytes(out)
+
+
+def encode(kind, session, seq, t_us, payload):
+    body = struct.pack("<BBHI", kind, session, seq, t_us & 0xFFFFFFFF) + payload
+    return b"\0" + cobs_encode(body + struct.pack("<I", crc32c(body))) + b"\0"
+
+
+class Frames:
+    """Frames out of bytes, in any pieces: (type, payload)."""
+
+    def __init__(self):
+        self.rest = b""
+        self.bad_n = 0
+
+    def take(self, data):
+        *pieces, self.rest = (self.rest + data).split(b"\0")
+        for piece in filter(None, pieces):
+            body = cobs_decode(piece)
+            if len(body) < 12 or crc32c(body[:-4]) != int.from_bytes(body[-4:], "little"):
+                self.bad_n += 1
+            else:
+                yield body[0], body[8:-4]
+
+
+def angles(payload):
+    """(tick, state, [tenths of a mrad])"""
+    tick, _, _, _, state, _ = struct.unpack_from("<IHHHBB", payload)
+    return tick, state, list(struct.unpack_from(f"<{(len(payload) - 12) // 2}h", payload, 12))
+
+
+def pose_log(payload):
+    """(tick, state, flags, [7 floats as bits])"""
+    tick, *bits, _, state, flags = struct.unpack("<I7IIBB", payload)
+    return tick, state, flags, bits
+
+
+def heartbeat(payload):
+    state, fault, flags, uptime_ms = struct.unpack_from("<BBBI", payload)
+    return {"state": STATES[state], "fault": fault, "torque": bool(flags & 1), "uptime_ms": uptime_ms}
+
+
+def boot_report(payload):
+    names = "cause fault settings clock flags clock_hz settings_sequence pc lr cfsr".split()
+    return dict(zip(names, struct.unpack("<5B5I", payload)))
+
+
+RELAY_S = 0.001  # QEMU sends byte by byte: to take each at once would keep a processor busy
+
+
+class Line:
+    """The device's line, with a relay's port for the PC tool: limber ... --port tcp:127.0.0.1:{line.port}.
+
+    Without a tool connected it goes on listening. frames has all that came, in order: (moment, type, payload)."""
+
+    def __init__(self, connection):
+        self.device = connection
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self.listener.getsockname()[1]
+        self.frames = []
+        self.decoder = Frames()
+        self.spoil = None  # what a test does to bytes on their way to the device
+        self.ended = False
+        self.thread = threading.Thread(target=self.relay)
+        self.thread.start()
+
+    def relay(self):
+        tool = None
+        while not self.ended:
+            time.sleep(RELAY_S)
+            ready = select.select([self.device, tool or self.listener], [], [], 0.05)[0]
+            if self.device in ready:
+                data = self.device.recv(65536)
+                if not data:
+                    break
+                for frame in self.decoder.take(data):
+                    self.frames.append((time.monotonic(), *frame))
+                tool = self.pass_on(tool, data)
+            if tool in ready:
+                data = tool.recv(65536)
+                if data:
+                    self.device.sendall(self.spoil(data) if self.spoil else data)
+                else:
+                    tool.close()
+                    tool = None
+            elif self.listener in ready:
+                tool = self.listener.accept()[0]
+                tool.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if tool:
+            tool.close()
+
+    @staticmethod
+    def pass_on(tool, data):
+        try:
+            if tool:
+                tool.sendall(data)
+            return tool
+        except OSError:  # it has gone
+            tool.close()
+            return None
+
+    def of(self, kind, after=0):
+        """Payloads of that type, from the after-th frame on."""
+        return [payload for _, found, payload in self.frames[after:] if found == kind]
+
+    def wait_for(self, kind, good=lambda payload: True, seconds=10, after=0):
+        """The first such payload that is good, which may have come already."""
+        deadline = time.monotonic() + seconds
+        while time.monotonic() < deadline:
+            for payload in self.of(kind, after):
+                if good(payload):
+                    return payload
+            time.sleep(0.02)
+        raise AssertionError(f"nothing of type {kind:#x} came that is as it should be, in {seconds} s; of all "
+                             f"{len(self.frames) - after} frames: {sorted({f[1] for f in self.frames[after:]})}")
+
+    def close(self):
+        self.ended = True
+        self.thread.join()
+        self.listener.close()
+        self.device.close()
