@@ -151,7 +151,17 @@ size_t dxl_status(uint8_t *packet, size_t room, uint8_t id, uint8_t error, const
 }
 
 /* What the next byte is. */
-enum { HUNTING, AT_ID, AT_LENGTH_LOW, AT_LENGTH_HIGH, IN_BODY, AT_CRC_LOW, AT_CRC_HIGH };
+enum {
+    HUNTING,
+    AT_ID,
+    AT_LENGTH_LOW,
+    AT_LENGTH_HIGH,
+    AT_INSTRUCTION,
+    AT_ERROR,
+    IN_PARAMS,
+    AT_CRC_LOW,
+    AT_CRC_HIGH
+};
 
 void dxl_decoder_init(dxl_decoder *d, uint8_t *params, size_t room)
 {
@@ -164,7 +174,6 @@ static void begin(dxl_decoder *d)
         d->bad_n++;
     }
     d->state = AT_ID;
-    d->got_n = 0;
     d->params_n = 0;
     d->error = 0;
     d->crc = dxl_crc16(0, MARK, MARK_BYTES);
@@ -179,27 +188,47 @@ static void give_up(dxl_decoder *d)
 static void take_length(dxl_decoder *d, uint8_t high)
 {
     d->length = (uint16_t)(d->length | high << 8);
-    d->state = IN_BODY;
+    d->left_n = (uint16_t)(d->length - CRC_BYTES);
+    d->state = AT_INSTRUCTION;
     if (d->length < 1 + CRC_BYTES || d->length > DXL_LENGTH_MAX) {
         give_up(d);
     }
 }
 
+static void take_instruction(dxl_decoder *d, uint8_t byte)
+{
+    const bool status = byte == DXL_STATUS;
+    d->instruction = byte;
+    d->state = status ? AT_ERROR : IN_PARAMS;
+    if (status && d->left_n == 1) {
+        give_up(d); /* has no error */
+    }
+}
+
+static void take_param(dxl_decoder *d, uint8_t byte)
+{
+    if (byte == STUFFED && d->last >> 8 == MARK_AS_LAST >> 8) {
+        return; /* stuffing */
+    }
+    if (d->params_n < d->room) {
+        d->params[d->params_n] = byte;
+    }
+    d->params_n++;
+}
+
+/* From the instruction to the last parameter. */
 static void take_body(dxl_decoder *d, uint8_t byte)
 {
-    const bool stuffing = byte == STUFFED && d->last >> 8 == MARK_AS_LAST >> 8;
-    if (d->got_n == 0) {
-        d->instruction = byte;
-    } else if (d->got_n == 1 && d->instruction == DXL_STATUS) {
+    if (d->state == IN_PARAMS) {
+        take_param(d, byte);
+    } else if (d->state == AT_INSTRUCTION) {
+        take_instruction(d, byte);
+    } else {
         d->error = byte;
-    } else if (!stuffing) {
-        if (d->params_n < d->room) {
-            d->params[d->params_n] = byte;
-        }
-        d->params_n++;
+        d->state = IN_PARAMS;
     }
-    d->got_n++;
-    if (d->got_n == d->length - CRC_BYTES) {
+    d->left_n--;
+    if (d->left_n == 0 && d->state == IN_PARAMS) {
         d->state = AT_CRC_LOW;
     }
 }
@@ -207,8 +236,7 @@ static void take_body(dxl_decoder *d, uint8_t byte)
 /* Whether the packet is whole. */
 static bool take_crc(dxl_decoder *d, uint8_t high, dxl_packet *packet)
 {
-    const bool headless = d->instruction == DXL_STATUS && d->got_n < 2; /* has no error */
-    if ((d->crc_sent | high << 8) != d->crc || headless) {
+    if ((d->crc_sent | high << 8) != d->crc) {
         give_up(d);
         return false;
     }
@@ -225,6 +253,19 @@ static bool take_crc(dxl_decoder *d, uint8_t high, dxl_packet *packet)
     return true;
 }
 
+static void take_header(dxl_decoder *d, uint8_t byte)
+{
+    if (d->state == AT_ID) {
+        d->id = byte;
+        d->state = AT_LENGTH_LOW;
+    } else if (d->state == AT_LENGTH_LOW) {
+        d->length = byte;
+        d->state = AT_LENGTH_HIGH;
+    } else {
+        take_length(d, byte);
+    }
+}
+
 bool dxl_decode(dxl_decoder *d, uint8_t byte, dxl_packet *packet)
 {
     d->last = d->last << 8 | byte;
@@ -233,32 +274,12 @@ bool dxl_decode(dxl_decoder *d, uint8_t byte, dxl_packet *packet)
     }
     if (d->last == MARK_AS_LAST) {
         begin(d); /* stuffing keeps this out of all packets but for a CRC that is right */
-        return false;
-    }
-    if (d->state >= AT_ID && d->state <= IN_BODY) {
-        d->crc = crc_add(d->crc, byte);
-    }
-    switch (d->state) {
-    case AT_ID:
-        d->id = byte;
-        d->state = AT_LENGTH_LOW;
-        break;
-    case AT_LENGTH_LOW:
-        d->length = byte;
-        d->state = AT_LENGTH_HIGH;
-        break;
-    case AT_LENGTH_HIGH:
-        take_length(d, byte);
-        break;
-    case IN_BODY:
-        take_body(d, byte);
-        break;
-    case AT_CRC_LOW:
+    } else if (d->state == AT_CRC_LOW) {
         d->crc_sent = byte;
         d->state = AT_CRC_HIGH;
-        break;
-    default:
-        break;
+    } else if (d->state != HUNTING) {
+        d->crc = crc_add(d->crc, byte);
+        (d->state >= AT_INSTRUCTION ? take_body : take_header)(d, byte);
     }
     return false;
 }

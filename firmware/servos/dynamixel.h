@@ -94,7 +94,7 @@ typedef struct {
         bad_n; /* packets with a wrong CRC or an impossible length, or torn by a new header; wraps */
     uint32_t last; /* bytes, the newest lowest */
     uint8_t state, id, instruction, error;
-    uint16_t length, got_n; /* as on the wire, from the instruction on */
+    uint16_t length, left_n; /* from the instruction on; and without the CRC, still to come */
     uint16_t params_n;
     uint16_t crc, crc_sent;
 } dxl_decoder;

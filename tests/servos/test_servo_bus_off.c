@@ -49,7 +49,7 @@ static void off_in_the_middle_of_a_hundred_goals(void)
 static void off_at_any_moment(void)
 {
     const servos_config config = wire_fresh(8);
-    for (int ms = 0; ms < HOST_OR_BOARD(640, 640); ms += HOST_OR_BOARD(1, 16)) {
+    for (int ms = 0; ms < 640; ms += HOST_OR_BOARD(1, 16)) {
         wire_fresh(8);
         configured(&config);
         servos_prepare(&subject, w.now_us);
