@@ -7,7 +7,8 @@ enum {
     REPLY_MAX_BYTES = 256,
     STATUS_READS = 1,
     STATUS_ALL = 2,
-    WRONG_CRC = 0, /* in the place of an instruction: no instruction has it */
+    BETWEEN_PACKETS = 8, /* bytes, beyond the places that are looked at */
+    WRONG_CRC = 0,       /* in the place of an instruction: no instruction has it */
 };
 
 /* One or more servos talking: what the wire makes of it. */
@@ -215,16 +216,26 @@ void bus_model_init(bus_model *m, servo_plant *plant, int servos_n, uint32_t bau
     memset(m, 0, sizeof *m);
     bus_wire_init(&m->wire, baud);
     dxl_decoder_init(&m->decoder, m->params, sizeof m->params);
+    m->end.n = BETWEEN_PACKETS;
     m->servos_n = servos_n;
     for (int i = 0; i < servos_n; i++) {
         bus_servo_init(&m->servos[i], plant, i, (uint8_t)(i + 1), baud);
     }
 }
 
-/* Whether the byte just decoded was the last of a packet that is whole, but for its CRC. */
-static bool crc_was_wrong(const dxl_decoder *d, uint32_t bad_n_before)
+/* Whether this byte should be the last of a packet; then, and if the decoder has none, its CRC is wrong. */
+static bool packet_ends(bus_packet_end *e, uint8_t byte)
 {
-    return d->bad_n != bad_n_before && d->got_n > 0;
+    e->last = e->last << 8 | byte;
+    e->n++;
+    if (e->last == 0xFFFFFD00u) {
+        e->n = 4;
+    } else if (e->n == 5) {
+        e->id = byte;
+    } else if (e->n == 7) {
+        e->end_n = 7 + (size_t)(byte << 8 | (e->last >> 8 & 0xFF));
+    }
+    return e->n > 7 && e->n == e->end_n;
 }
 
 void bus_model_run(bus_model *m, double now_s)
@@ -233,11 +244,11 @@ void bus_model_run(bus_model *m, double now_s)
     double at_s;
     while (bus_wire_hear(&m->wire, now_s, &byte, &at_s)) {
         dxl_packet packet = {.instruction = WRONG_CRC};
-        const uint32_t bad_n = m->decoder.bad_n;
-        if (dxl_decode(&m->decoder, byte, &packet)) {
-            take_packet(m, &packet, at_s);
-        } else if (crc_was_wrong(&m->decoder, bad_n)) {
-            packet.id = m->decoder.id;
+        const bool ends = packet_ends(&m->end, byte);
+        if (!dxl_decode(&m->decoder, byte, &packet)) {
+            packet.id = m->end.id;
+        }
+        if (ends) {
             take_packet(m, &packet, at_s);
         }
     }

@@ -36,6 +36,13 @@ typedef struct {
     double lost, damaged, late_s;
 } bus_faults;
 
+/* Where in a packet the wire is; n: bytes since its header began. */
+typedef struct {
+    uint32_t last; /* bytes, the newest lowest */
+    uint8_t id;
+    size_t n, end_n;
+} bus_packet_end;
+
 /* Set any_baud and faults at will, read servos and counts; treat the others as private. Must not be moved. */
 typedef struct {
     bus_servo servos[SERVO_COUNT_MAX];
@@ -47,6 +54,7 @@ typedef struct {
 
     double free_s; /* the last answer is over */
     uint64_t random;
+    bus_packet_end end;
     dxl_decoder decoder;
     uint8_t params[DXL_LENGTH_MAX];
 } bus_model;

@@ -1,6 +1,7 @@
 /* bus_wire.c - see bus_wire.h. */
 #include "bus_wire.h"
 
+#include <math.h>
 #include <string.h>
 
 static double byte_s(const bus_wire *w)
@@ -21,10 +22,10 @@ static bus_byte queue_take(bus_queue *q)
     return b;
 }
 
-static void queue_add(bus_queue *q, uint8_t byte, double at_s)
+static void queue_add(bus_queue *q, bus_byte b)
 {
     if (q->n < q->room) {
-        *queue_at(q, q->n++) = (bus_byte){at_s, byte};
+        *queue_at(q, q->n++) = b;
     }
 }
 
@@ -66,7 +67,9 @@ static double put(bus_wire *w, bus_queue *to, bus_queue *others, const uint8_t *
     const double each_s = byte_s(w), end_s = start_s + (double)bytes_n * each_s;
     const bool clash = spoil(w, others, start_s, end_s);
     for (size_t i = 0; i < bytes_n; i++) {
-        queue_add(to, clash ? spoilt(bytes[i]) : bytes[i], start_s + (double)(i + 1) * each_s);
+        queue_add(to, (bus_byte){.at_s = start_s + (double)(i + 1) * each_s,
+                                 .byte = clash ? spoilt(bytes[i]) : bytes[i],
+                                 .last = i + 1 == bytes_n});
     }
     return end_s;
 }
@@ -110,6 +113,23 @@ size_t bus_wire_read(bus_wire *w, uint8_t *bytes, size_t room, double now_s)
     return n;
 }
 
+size_t bus_wire_read_whole(bus_wire *w, uint8_t *bytes, size_t room, double now_s)
+{
+    const bus_queue *q = &w->to_host;
+    size_t whole_n = 0;
+    for (size_t i = 0; i < q->n && i < room && queue_at(q, i)->at_s <= now_s; i++) {
+        whole_n = queue_at(q, i)->last ? i + 1 : whole_n;
+    }
+    return bus_wire_read(w, bytes, whole_n, now_s);
+}
+
+double bus_wire_next_s(const bus_wire *w)
+{
+    const double out_s = w->to_servos.n > 0 ? queue_at(&w->to_servos, 0)->at_s : HUGE_VAL;
+    const double in_s = w->to_host.n > 0 ? queue_at(&w->to_host, 0)->at_s : HUGE_VAL;
+    return out_s < in_s ? out_s : in_s;
+}
+
 void bus_wire_abort(bus_wire *w, double now_s)
 {
     bus_queue *out = &w->to_servos;
@@ -130,7 +150,7 @@ bool bus_wire_hear(bus_wire *w, double now_s, uint8_t *byte, double *at_s)
     *byte = b.byte;
     *at_s = b.at_s;
     if (w->echo) {
-        queue_add(&w->to_host, b.byte, b.at_s);
+        queue_add(&w->to_host, b);
     }
     return true;
 }

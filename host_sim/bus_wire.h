@@ -16,6 +16,7 @@ enum { BUS_WIRE_TO_SERVOS_BYTES = 4096, BUS_WIRE_TO_HOST_BYTES = 8192 };
 typedef struct {
     double at_s; /* its stop bit is out */
     uint8_t byte;
+    bool last; /* of what was put on the wire at once */
 } bus_byte;
 
 /* A ring. */
@@ -44,6 +45,12 @@ void bus_wire_start(bus_wire *w, uint32_t baud);
 bool bus_wire_send(bus_wire *w, const uint8_t *bytes, size_t bytes_n, double now_s);
 bool bus_wire_sending(const bus_wire *w, double now_s);
 size_t bus_wire_read(bus_wire *w, uint8_t *bytes, size_t room, double now_s);
+
+/* The same, but an answer in one piece, once it is over; room for one at least. */
+size_t bus_wire_read_whole(bus_wire *w, uint8_t *bytes, size_t room, double now_s);
+
+/* When something happens next, as far as is known; HUGE_VAL: nothing is on the wire. */
+double bus_wire_next_s(const bus_wire *w);
 
 /* The byte that is on its way is the last; what has come is forgotten. Answers go on. */
 void bus_wire_abort(bus_wire *w, double now_s);

@@ -191,7 +191,7 @@ static void boot(host_device *h, float tick_s, int links_n)
                                 .tick_max_hz = 2000.0f,
                                 .line_baud = h->line_baud,
                                 .features = FEATURE_NODES | FEATURE_POSE_LOG | FEATURE_SETTINGS |
-                                            FEATURE_SERVO_POSITIONS | FEATURE_SIMULATED,
+                                            FEATURE_SERVO_ASSIGN | FEATURE_SIMULATED,
                                 .name = "limber-sim",
                                 .build = SIM_VERSION,
                                 .links_n = links_n,

@@ -1,5 +1,6 @@
 /* servos_command.c - limber-sim servos: smart servos on a port of their own, for a board that is not there: QEMU's
  * sixth serial port, or a USB adapter's bus at the other end of a cable. */
+#include <math.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,23 +21,24 @@ enum {
     OPTION_ECHO,
     OPTION_INJECT,
 };
+enum { AT_ONCE_BAUD = 100000000 }; /* an emulated board's bytes take no time either */
 
-/* Answers are on their way within it, and the servos turn in steps of it. */
-#define STEP_S 0.0005f
+#define STEP_S 0.0005f /* the servos turn in steps of it */
 
 static const char EXAMPLES[] =
-    "  limber-sim servos --tcp 127.0.0.1:5556 --count 100       # one terminal\n"
-    "  qemu-system-arm ... -serial tcp:127.0.0.1:5556           # another: its USART6\n"
-    "  limber-sim servos --pty build/servos --inject unplug@10+5:3 --inject garble@20+5:0.01\n\n"
-    "The port does not tell a baud rate: the servos understand whatever comes, and take the time "
-    "of "
-    "--baud. They have power\n"
-    "from the start. Ends with Ctrl-C, and then prints what it has seen.\n";
+    "  limber-sim servos --pty build/servos --count 100\n"
+    "  qemu-system-arm ... -chardev serial,id=bus,path=build/servos -serial chardev:bus\n"
+    "  limber-sim servos --tcp 127.0.0.1:5556 --inject unplug@10+5:3 --inject garble@20+5:0.01\n\n"
+    "The sixth -serial is the emulated board's USART6, the servo bus. The port does not tell a "
+    "baud\n"
+    "rate: the servos understand whatever comes. They have power from the start. Ends with Ctrl-C, "
+    "and\n"
+    "then prints what it has seen.\n";
 
 typedef struct {
     char *pty, *tcp;
     double count;
-    uint32_t baud;
+    uint32_t baud, set_baud; /* of the wire; what the servos are set to */
     int echo;
     injection script;
 } choices;
@@ -55,11 +57,13 @@ static double now_s(void)
     return (double)now.tv_sec + (double)now.tv_nsec * 1e-9;
 }
 
-/* Until something comes, or the next step. */
-static void wait_for_bytes(const line *l)
+/* Until bytes come, something happens on the wire, or it is time for the next step. */
+static void wait_for_bytes(const servos_world *w, double time_s)
 {
-    const struct timespec most = {.tv_nsec = (long)(STEP_S * 1e9f)};
-    struct pollfd poll_for = {.fd = l->fd, .events = POLLIN};
+    const double to_next_s = bus_wire_next_s(&w->bus.wire) - time_s;
+    const double most_s = fmin(fmax(to_next_s, 0.0), (double)STEP_S);
+    const struct timespec most = {.tv_nsec = (long)(most_s * 1e9)};
+    struct pollfd poll_for = {.fd = w->line.fd, .events = POLLIN};
     (void)ppoll(&poll_for, 1, &most, NULL);
 }
 
@@ -72,7 +76,8 @@ static void step(servos_world *w, const injection *script, double time_s)
     }
     bus_model_inject(&w->bus, script, time_s);
     bus_model_run(&w->bus, time_s);
-    n = bus_wire_read(&w->bus.wire, bytes, sizeof bytes, time_s);
+    /* in one piece, so that what this machine does in between is no gap in an answer */
+    n = bus_wire_read_whole(&w->bus.wire, bytes, sizeof bytes, time_s);
     (void)line_write(&w->line, bytes, n);
     line_flush(&w->line);
 }
@@ -80,9 +85,9 @@ static void step(servos_world *w, const injection *script, double time_s)
 static void run(servos_world *w, const injection *script)
 {
     const double start_s = now_s();
-    for (double turned_s = 0.0; !live_asked_to_stop();) {
-        wait_for_bytes(&w->line);
-        const double time_s = now_s() - start_s;
+    for (double turned_s = 0.0, time_s = 0.0; !live_asked_to_stop();) {
+        wait_for_bytes(w, time_s);
+        time_s = now_s() - start_s;
         step(w, script, time_s);
         for (; turned_s < time_s; turned_s += (double)STEP_S) {
             servo_plant_tick(&w->plant, STEP_S);
@@ -112,7 +117,8 @@ static int serve(const choices *c)
         return sim_give_up("out of memory");
     }
     servo_plant_init(&w->plant, 6, 15.0f); /* 3 ms late, as limber-sim device has them */
-    bus_model_init(&w->bus, &w->plant, (int)c->count, c->baud);
+    bus_model_init(&w->bus, &w->plant, (int)c->count, c->set_baud);
+    bus_wire_start(&w->bus.wire, c->baud);
     w->plant.powered = true;
     w->bus.any_baud = true;
     w->bus.wire.echo = c->echo != 0;
@@ -141,7 +147,7 @@ static int take_option(choices *c, int option, const char *text)
         return live_servo_baud("--baud", text, &c->baud);
     case OPTION_FACTORY:
         c->count = 1.0;
-        c->baud = BUS_SERVO_FACTORY_BAUD;
+        c->set_baud = BUS_SERVO_FACTORY_BAUD;
         return SIM_OK;
     default:
         return injection_add(&c->script, text);
@@ -176,14 +182,15 @@ static int take_options(poptContext context, choices *c, bool *help)
 
 int sim_servos_command(int argc, const char **argv)
 {
-    choices c = {.count = 8.0, .baud = 1000000};
+    choices c = {.count = 8.0, .baud = AT_ONCE_BAUD, .set_baud = 1000000};
     const struct poptOption table[] = {
         {"pty", 0, POPT_ARG_STRING, NULL, OPTION_PTY, "be found as a serial port under this name",
          "LINK"},
         {"tcp", 0, POPT_ARG_STRING, NULL, OPTION_TCP, "listen there for one controller at a time",
          "ADDRESS:PORT"},
         {"count", 0, POPT_ARG_STRING, NULL, OPTION_COUNT, "servos, with ids 1, 2, ... (8)", "N"},
-        {"baud", 0, POPT_ARG_STRING, NULL, OPTION_BAUD, "how fast the wire is (1000000)", "BAUD"},
+        {"baud", 0, POPT_ARG_STRING, NULL, OPTION_BAUD, "bytes take the time of this rate (none)",
+         "BAUD"},
         {"factory", 0, POPT_ARG_NONE, NULL, OPTION_FACTORY,
          "one servo as it comes from the factory: id 1, 57600 baud", NULL},
         {"echo", 0, POPT_ARG_NONE, &c.echo, 0, "the controller hears itself", NULL},

@@ -973,7 +973,19 @@ enums:
       doc: "still busy with something else: try again"
     21:
       id: servo
-      doc: "a servo did not answer or reported an error"
+      doc: "a servo cannot do that"
+    22:
+      id: servo_silent
+      doc: "a servo does not answer"
+    23:
+      id: servo_garbled
+      doc: "noise comes instead of a servo's answer"
+    24:
+      id: servo_hardware
+      doc: "a servo reports a hardware error: the value"
+    25:
+      id: servo_beyond
+      doc: "no such baud rate or PWM channel here"
   log_level:
     0:
       id: error

@@ -59,7 +59,11 @@
     VALUE(REASON, LINE_RATE, 18, "does not fit the line: the text has the arithmetic")                           \
     VALUE(REASON, FLASH, 19, "flash is full or failed")                                                          \
     VALUE(REASON, BUSY, 20, "still busy with something else: try again")                                         \
-    VALUE(REASON, SERVO, 21, "a servo did not answer or reported an error")
+    VALUE(REASON, SERVO, 21, "a servo cannot do that")                                                           \
+    VALUE(REASON, SERVO_SILENT, 22, "a servo does not answer")                                                   \
+    VALUE(REASON, SERVO_GARBLED, 23, "noise comes instead of a servo's answer")                                  \
+    VALUE(REASON, SERVO_HARDWARE, 24, "a servo reports a hardware error: the value")                             \
+    VALUE(REASON, SERVO_BEYOND, 25, "no such baud rate or PWM channel here")
 
 #define LOG_LEVELS(VALUE)                                                                                        \
     VALUE(LEVEL, ERROR, 0, "something is broken")                                                                \

@@ -69,7 +69,7 @@ void arming_before_states(device *d)
         break;
     case SERVOS_FAILED:
         arming_trouble(d, text, sizeof text);
-        refuse(d, REASON_SERVO, text);
+        refuse(d, servo_commands_reason(d->servos.trouble.kind), text);
         break;
     default: /* something has switched them off in between */
         refuse(d, REASON_STATE, "stopped before the servos were ready");

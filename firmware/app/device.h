@@ -117,9 +117,10 @@ void param_commands_take(device *d, const message *m); /* param_commands.c */
 void param_commands_end_tick(device *d);
 void servo_commands_take(device *d, const message *m); /* servo_commands.c */
 void servo_commands_end_tick(device *d);
-void arming_begin(device *d, uint16_t request_id); /* arming.c: the servos are looked for */
-void arming_before_states(device *d);              /* found: the states may hear of the ARM */
-void arming_after_states(device *d);               /* what became of it */
+uint8_t servo_commands_reason(uint8_t trouble_kind); /* REASON_SERVO... */
+void arming_begin(device *d, uint16_t request_id);   /* arming.c: the servos are looked for */
+void arming_before_states(device *d);                /* found: the states may hear of the ARM */
+void arming_after_states(device *d);                 /* what became of it */
 void arming_trouble(const device *d, char *text, size_t room); /* which servo, and what is wrong */
 void telemetry_send(device *d);
 void telemetry_stats(device *d, uint16_t request_id);

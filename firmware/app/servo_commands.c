@@ -5,6 +5,23 @@
 
 #include "answers.h"
 
+uint8_t servo_commands_reason(uint8_t trouble_kind)
+{
+    switch (trouble_kind) {
+    case SERVO_TROUBLE_SILENT:
+        return REASON_SERVO_SILENT;
+    case SERVO_TROUBLE_GARBLED:
+        return REASON_SERVO_GARBLED;
+    case SERVO_TROUBLE_HARDWARE:
+        return REASON_SERVO_HARDWARE;
+    case SERVO_TROUBLE_BAUD:
+    case SERVO_TROUBLE_CHANNEL:
+        return REASON_SERVO_BEYOND;
+    default:
+        return REASON_SERVO;
+    }
+}
+
 static servo_request translate(const message *m)
 {
     switch (m->type) {
@@ -110,7 +127,8 @@ void servo_commands_end_tick(device *d)
         return;
     }
     const bool failed = state == SERVO_REQUEST_FAILED; /* else: stopped in between */
-    const params_refusal why = {.reason = failed ? REASON_SERVO : REASON_STATE,
+    const params_refusal why = {.reason =
+                                    failed ? servo_commands_reason(trouble.kind) : REASON_STATE,
                                 .entry = -1,
                                 .value = failed ? (float)trouble.detail : 0.0f,
                                 .field = "",

@@ -76,7 +76,7 @@ typedef struct {
      * clock cannot make it within 1 %. Write: takes the whole packet and sends it by itself, or nothing while one is
      * under way (or it is longer than HAL_BUS_PACKET_MAX_BYTES). Sending: until the last stop bit is out.
      * Read: bytes that have come; whether the packet's own echo is among them depends on the wiring. Abort: ends what
-     * is under way within a byte and forgets what has come. */
+     * is under way within two bytes and forgets what has come. */
     bool (*bus_start)(void *context, uint32_t baud);
     bool (*bus_write)(void *context, const uint8_t *bytes, size_t bytes_n);
     bool (*bus_sending)(void *context);

@@ -249,7 +249,6 @@ static bool take_crc(dxl_decoder *d, uint8_t high, dxl_packet *packet)
         .wire_n = HEADER_BYTES + (size_t)d->length,
     };
     d->state = HUNTING;
-    d->last = 0;
     return true;
 }
 

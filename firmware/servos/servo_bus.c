@@ -134,10 +134,15 @@ void servo_bus_torque(servo_bus *b, const float *goals_rad)
 {
     memcpy(b->goal_units, b->placed_units, sizeof b->goal_units);
     servo_bus_goals(b, goals_rad);
-    memcpy(b->placed_units, b->goal_units, sizeof b->placed_units);
     b->rewrites = 0;
     b->misses = 0;
     servo_bus_begin(b, SERVO_BUS_STARTING, SERVO_BUS_TORQUE);
+    for (int i = 0; i < b->config->servos_n; i++) {
+        if (b->placed_units[i] == INT16_MAX || b->placed_units[i] == INT16_MIN) {
+            servo_bus_fail(b, (servo_trouble){SERVO_TROUBLE_FAR, (int16_t)i, b->config->id[i], 0});
+            return; /* where it really is has not been kept */
+        }
+    }
 }
 
 bool servo_bus_healthy(const servo_bus *b)
@@ -161,6 +166,17 @@ static void answer(servo_bus *b)
     }
 }
 
+/* The packet under way does not end: the board's fault, but the servos cannot be reached. */
+static void stuck(servo_bus *b)
+{
+    const servo_trouble trouble = {.kind = SERVO_TROUBLE_SILENT, .servo = -1};
+    if (b->state != SERVO_BUS_ON) {
+        servo_bus_fail(b, trouble);
+    } else if (b->trouble.kind == SERVO_TROUBLE_NONE) {
+        b->trouble = trouble;
+    }
+}
+
 void servo_bus_tick(servo_bus *b, uint32_t now_us)
 {
     b->now_us = now_us;
@@ -172,6 +188,9 @@ void servo_bus_tick(servo_bus *b, uint32_t now_us)
         answer(b);
     }
     if (b->hal->bus_sending(b->hal->context)) {
+        if (b->script != NULL && now_us - b->told_us > SERVO_BUS_STUCK_US) {
+            stuck(b);
+        }
         return;
     }
     if (b->torque_offs > 0) {

@@ -7,7 +7,6 @@ enum {
     LATEST_ANSWER_US = 2 * 254, /* the longest Return Delay Time */
     MARGIN_US = 1000,
     LISTEN_BYTES = 64,
-    ANSWERS_BYTES = 480, /* of 512 that the board keeps; the rest is for the echo */
     ANSWERS_US =
         20000, /* so long may one question and its answers take, that the watchdogs hear something */
 };
@@ -40,6 +39,7 @@ bool servo_bus_tell(servo_bus *b, size_t packet_n)
         return false;
     }
     b->counts.sent++;
+    b->told_us = b->now_us;
     return true;
 }
 
@@ -108,9 +108,7 @@ static int at_once(const servo_bus *b, int n)
 {
     const uint32_t answer_n = DXL_STATUS_BYTES + (uint32_t)n;
     const uint32_t by_time = ANSWERS_US / (wire_us(b->baud, answer_n + 1) + 1);
-    const uint32_t by_room = ANSWERS_BYTES / (answer_n + 1); /* one more for its id in the echo */
-    const uint32_t most = by_time < by_room ? by_time : by_room;
-    return most == 0 ? 1 : most < SERVO_BUS_CHUNK_MAX ? (int)most : SERVO_BUS_CHUNK_MAX;
+    return by_time == 0 ? 1 : by_time < SERVO_BUS_CHUNK_MAX ? (int)by_time : SERVO_BUS_CHUNK_MAX;
 }
 
 void servo_bus_ask_many(servo_bus *b, int first, uint16_t address, int n,

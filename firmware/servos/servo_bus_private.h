@@ -45,8 +45,8 @@ void servo_bus_ask_ping(servo_bus *b, uint8_t id, int tries);
 void servo_bus_ask_read(servo_bus *b, uint8_t id, uint16_t address, int n, int tries);
 void servo_bus_ask_write(servo_bus *b, uint8_t id, uint16_t address, int n, uint32_t value);
 
-/* Asks the servos from place `first` on, as many as one go can carry (b->question.servos_n), for n <= 4 bytes; each gets
- * them as a number, when they come. */
+/* Asks the servos from place `first` on, as many as one go can carry (b->question.servos_n), for n <= 4 bytes; each
+ * gets them as a number, when they come. */
 void servo_bus_ask_many(servo_bus *b, int first, uint16_t address, int n,
                         void (*each)(servo_bus *b, int place, uint32_t value));
 
@@ -65,8 +65,7 @@ void servo_bus_fail(servo_bus *b, servo_trouble trouble);
 
 /* --- servo_bus_prepare.c, servo_bus_torque.c, servo_bus_request.c: the scripts --- */
 
-extern const servo_bus_step
-    SERVO_BUS_BOOT; /* every script that may meet servos without power before begins with it */
+extern const servo_bus_step SERVO_BUS_BOOT; /* waits until SERVO_BUS_BOOT_US after since_us */
 extern const servo_bus_step *const SERVO_BUS_PREPARE[];
 extern const servo_bus_step *const SERVO_BUS_TORQUE[];
 extern const servo_bus_step *const SERVO_BUS_ON_STEPS[];

@@ -104,6 +104,9 @@ const servo_bus_step *const SERVO_BUS_TORQUE[] = {&HUSH,  &WRITE, &CHECK, &WRITE
 
 /* --- On --- */
 
+_Static_assert(DXL_SYNC_PARAMS_AT + 5 * SERVO_BUS_SERVOS_MAX + 2 <= HAL_BUS_PACKET_MAX_BYTES,
+               "goals for all in one packet");
+
 static void send_goals(servo_bus *b)
 {
     const uint8_t *ids = b->config->id;

@@ -55,7 +55,7 @@ static void pulse(const servo_pwm *p, uint8_t id, float goal_rad)
 void servo_pwm_goals(servo_pwm *p, const float *goals_rad)
 {
     for (int i = 0; i < p->config->servos_n; i++) {
-        if (goals_rad[i] > 0.0f || goals_rad[i] <= 0.0f) { /* NaN leaves it where it was */
+        if (servo_is_number(goals_rad[i])) { /* else it stays where it was */
             p->goals_rad[i] = goals_rad[i];
         }
         if (i < p->enabled_n) {

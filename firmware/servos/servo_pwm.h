@@ -1,8 +1,8 @@
 /* servo_pwm.h - hobby servos on the hal's PWM channels; servos.h is the way in.
  *
- * A hobby servo does not tell where it is: its first move, from wherever it is to its goal, is its own and as fast as it
- * can. So no two begin at once: channels get pulses one at a time, SERVOS_PWM_STEP_US apart, in the order of config.id.
- * From then on each follows its goals. Caller-owned, no heap, main loop only.
+ * A hobby servo does not tell where it is: its first move, from wherever it is to its goal, is its own and as fast
+ * as it can. So no two begin at once: channels get pulses one at a time, SERVOS_PWM_STEP_US apart, in the order of
+ * config.id. From then on each follows its goals. Caller-owned, no heap, main loop only.
  */
 #ifndef LIMBER_SERVO_PWM_H
 #define LIMBER_SERVO_PWM_H

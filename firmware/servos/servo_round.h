@@ -2,6 +2,7 @@
 #ifndef LIMBER_SERVO_ROUND_H
 #define LIMBER_SERVO_ROUND_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -13,6 +14,12 @@ static inline int32_t servo_nearest(float x)
     int32_t bits;
     memcpy(&bits, &shifted, sizeof bits);
     return bits - 0x4B400000;
+}
+
+/* Neither NaN nor infinite. */
+static inline bool servo_is_number(float x)
+{
+    return __builtin_fabsf(x) < 3.0e38f;
 }
 
 #endif

@@ -33,6 +33,7 @@ typedef enum {
     SERVO_TROUBLE_READ_BACK, /* took a value and holds another: detail is that */
     SERVO_TROUBLE_MODE,      /* does not follow goal positions: detail is its Operating Mode */
     SERVO_TROUBLE_TAKEN,     /* another servo has the new id */
+    SERVO_TROUBLE_FAR,       /* many turns away from its middle */
     SERVO_TROUBLES_N,
 } servo_trouble_kind;
 

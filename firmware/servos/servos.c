@@ -3,6 +3,8 @@
 
 #include <stddef.h>
 
+#include "servo_round.h"
+
 enum { SERVICE_US = 10000000 };
 
 static const servo_trouble NO_TROUBLE = {.servo = -1};
@@ -24,6 +26,8 @@ const char *servo_trouble_text(uint8_t kind)
                                 "or the baud rate",
         [SERVO_TROUBLE_READ_BACK] = "holds another value than was written: check its limits",
         [SERVO_TROUBLE_MODE] = "does not follow positions: set its Operating Mode to 3 or 4",
+        [SERVO_TROUBLE_FAR] =
+            "is many turns from its middle: turn it back, or switch it off and on",
         [SERVO_TROUBLE_TAKEN] = "is not free: another servo has that id",
     };
     return kind < SERVO_TROUBLES_N && TEXTS[kind] != NULL ? TEXTS[kind] : "has an unknown trouble";
@@ -154,11 +158,13 @@ void servos_off(servos *s)
     s->state = SERVOS_OFF;
 }
 
-/* What the bus has come to, in the terms of this file. */
-static void follow_bus(servos *s, uint32_t now_us)
+/* What the bus has come to, in the terms of this file; the others have nothing to find. */
+static void follow(servos *s, uint32_t now_us)
 {
     const servo_bus *bus = &s->bus;
-    if (s->state == SERVOS_ON) {
+    if (s->config.kind != SERVOS_BUS) {
+        s->state = s->state == SERVOS_PREPARING ? SERVOS_PREPARED : s->state;
+    } else if (s->state == SERVOS_ON) {
         s->trouble = bus->trouble;
     } else if (bus->state == SERVO_BUS_FAILED) {
         fail(s, bus->trouble, now_us);
@@ -190,23 +196,16 @@ static void follow_request(servos *s, uint32_t now_us)
 
 void servos_tick(servos *s, uint32_t now_us)
 {
-    const bool bus = s->config.kind == SERVOS_BUS;
-    if (bus) {
+    if (s->config.kind == SERVOS_BUS) {
         servo_bus_tick(&s->bus, now_us);
     } else if (s->config.kind == SERVOS_PWM) {
         servo_pwm_tick(&s->pwm, now_us);
     }
     switch (s->state) {
     case SERVOS_PREPARING:
-        if (!bus) {
-            enter(s, SERVOS_PREPARED, now_us); /* nothing to be found */
-            break;
-        } /* fall through */
     case SERVOS_PREPARED:
     case SERVOS_ON:
-        if (bus) {
-            follow_bus(s, now_us);
-        }
+        follow(s, now_us);
         break;
     case SERVOS_SERVICE:
         if (s->answer == SERVO_REQUEST_BUSY) {
@@ -233,12 +232,11 @@ bool servos_started(const servos *s)
 /* Whether servos of this kind know such a request, and it makes sense. */
 static bool sensible(const servos *s, const servo_request *r)
 {
-    const bool turns = r->turn_rad > 0.0f || r->turn_rad <= 0.0f; /* is a number */
     switch (r->kind) {
     case SERVO_REQUEST_PING:
         break;
     case SERVO_REQUEST_TEST:
-        if (!turns) {
+        if (!servo_is_number(r->turn_rad)) {
             return false;
         }
         break;

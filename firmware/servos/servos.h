@@ -90,8 +90,8 @@ bool servos_healthy(const servos *s);
 bool servos_started(const servos *s);
 
 /* One request to one servo, while OFF, FAILED or SERVICE: supply on, and off again 10 s after the last. False if one
- * is under way, the state does not allow it, it makes no sense (an id beyond SERVO_ID_MAX, a turn that is no number), or
- * servos of this kind know no such thing: PWM channels only PING and TEST. Turns are clamped to
+ * is under way, the state does not allow it, it makes no sense (an id beyond SERVO_ID_MAX, a turn that is no
+ * number), or servos of this kind know no such thing: PWM channels only PING and TEST. Turns are clamped to
  * +-SERVO_BUS_TURN_MAX_RAD. */
 bool servos_request(servos *s, const servo_request *request, uint32_t now_us);
 

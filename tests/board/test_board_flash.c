@@ -216,7 +216,9 @@ static void busy_for_ever_ends(void)
 static void a_lock_that_stays_is_seen(void)
 {
     hardware.jammed = true;
+    controller.sr = FLASH_SR_PGSERR; /* of before */
     TEST_ASSERT_FALSE(write_piece(0));
+    TEST_ASSERT_EQUAL_HEX32(0, f.errors);
     TEST_ASSERT_FALSE(flash_erase(&f, 1));
     TEST_ASSERT_EQUAL_INT(0, hardware.operations_n);
     TEST_ASSERT_EACH_EQUAL_HEX32(0xFFFFFFFF, sectors[1], WORDS);

@@ -34,8 +34,9 @@ static void outputs_are(uint32_t mode)
 static void low_until_started(void)
 {
     outputs_are(TIM_CCMR_LOW);
+    scripted_start((script){NULL, NULL});
     pwm_pulse(&p, 0, 1500);
-    outputs_are(TIM_CCMR_LOW);
+    TEST_ASSERT_EQUAL_INT(0, scripted_writes_n);
     TEST_ASSERT_EQUAL_HEX32(0, timers[0].cr1 & TIM_CR1_CEN);
 }
 

@@ -1,6 +1,6 @@
-/* count_servos.c - what the servo bus costs on the Cortex-M4F, in instructions, exactly: QEMU with `-icount shift=0` lets
- * TIM2 count them one for one (tests/target/count_instructions.c). Prints `part N count` lines, N servos. Once on,
- * the wire is changed for a hal that costs next to nothing. */
+/* count_servos.c - what the servo bus costs on the Cortex-M4F, in instructions, exactly: QEMU with `-icount shift=0`
+ * lets TIM2 count them one for one (tests/target/count_instructions.c). Prints `part N count` lines, N servos. Once
+ * on, the wire is changed for a hal that costs next to nothing. */
 #include <stdio.h>
 
 #include "servo_wire_hal.h"

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""ROBOTIS' own dynamixel-sdk (PyPI) against dynamixel.c: the CRC of random bytes, Ping to every id, Sync Write of goals, byte
-for byte as the SDK hands them to its port.
+"""ROBOTIS' own dynamixel-sdk (PyPI) against dynamixel.c: the CRC of random bytes, Ping to every id, Sync Write of
+goals, byte for byte as the SDK hands them to its port.
 
-Only packets in which nothing has to be stuffed are compared: where FF FF FD comes up, SDK 3.7.31 makes the longer packet
-in a new list and then sends the old one, without the FD. Goals never need any (test_servo_bus_on.c).
+Only packets in which nothing has to be stuffed are compared: where FF FF FD comes up, SDK 3.7.31 makes the longer
+packet in a new list and then sends the old one, without the FD. Goals never need any (test_servo_bus_on.c).
 
 Exit code 77 where the package registry cannot be reached.
 """

@@ -57,7 +57,7 @@ typedef struct {
 
 typedef struct {
     uint32_t now_us, powered_us, sent_us;
-    bool supply, echo, sending;
+    bool supply, echo, sending, stuck; /* stuck: the board never says that it is done */
     uint32_t baud, baud_max;
     int servos_n;
     wire_servo servo[WIRE_SERVOS_N];
@@ -71,6 +71,8 @@ typedef struct {
     uint32_t line_us; /* when the last byte of an answer is over */
     wire_record log[WIRE_LOG_N];
     int log_n, aborts, starts, overruns;
+    int collisions;    /* packets sent while a servo was answering */
+    size_t unread_max; /* the most bytes that had come between two reads */
     uint32_t pulse_us[HAL_PWM_CHANNELS_N];
     float pwm_hz;
     int pulsing_n;

@@ -41,6 +41,7 @@ static inline bool hal_bus_write(void *context, const uint8_t *bytes, size_t byt
     w.out_n = bytes_n;
     w.sending = true;
     w.sent_us = w.now_us + wire_bytes_us(bytes_n);
+    w.collisions += (int32_t)(w.line_us - w.now_us) > 0 ? 1 : 0;
     if (w.echo) {
         wire_come(bytes, bytes_n, w.now_us);
     }
@@ -50,13 +51,17 @@ static inline bool hal_bus_write(void *context, const uint8_t *bytes, size_t byt
 static inline bool hal_bus_sending(void *context)
 {
     (void)context;
-    return w.sending;
+    return w.sending || w.stuck;
 }
 
 static inline size_t hal_bus_read(void *context, uint8_t *bytes, size_t room)
 {
     (void)context;
-    size_t n = 0, kept = 0;
+    size_t n = 0, kept = 0, there = 0;
+    while (there < w.coming_n && (int32_t)(w.now_us - w.coming[there].due_us) >= 0) {
+        there++;
+    }
+    w.unread_max = there > w.unread_max ? there : w.unread_max;
     for (size_t i = 0; i < w.coming_n; i++) {
         if (n < room && kept == 0 && (int32_t)(w.now_us - w.coming[i].due_us) >= 0) {
             bytes[n++] = w.coming[i].byte;
@@ -114,7 +119,8 @@ static const hal WIRE_HAL = {
 static servos subject;
 static float goals_rad[SERVO_COUNT_MAX];
 
-/* N servos with ids 1 ... N at 4 Mbaud, each somewhere else, as delivered but for the rate; the clock is about to wrap. */
+/* N servos with ids 1 ... N at 4 Mbaud, each somewhere else, as delivered but for the rate; the clock is about to
+ * wrap. */
 static inline servos_config wire_fresh(int servos_n)
 {
     memset(&w, 0, sizeof w);

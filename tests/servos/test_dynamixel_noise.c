@@ -58,6 +58,24 @@ static void a_packet_behind_a_torn_one_is_found(void)
     }
 }
 
+/* The CRC is not stuffed: with FF FF before it, FD 00 in it looks like a header, and is none. */
+static void a_crc_like_a_header_is_none(void)
+{
+    uint8_t packet[ROOM];
+    size_t n = 0;
+    int found = 0;
+    for (uint32_t i = 0; i < 0x20000 && found < 1; i++) {
+        const uint8_t values[] = {(uint8_t)i, (uint8_t)(i >> 8), (uint8_t)(i >> 16), 0xFF, 0xFF};
+        n = dxl_status(packet, ROOM, 5, 0, values, sizeof values);
+        found += dxl_u16(packet + n - 2) == 0x00FD ? 1 : 0;
+    }
+    TEST_ASSERT_EQUAL_INT(1, found);
+    fresh();
+    TEST_ASSERT_EQUAL_INT(1, feed(packet, n));
+    TEST_ASSERT_EQUAL_INT(1, feed(packet, n));
+    TEST_ASSERT_EQUAL_UINT32(0, d.bad_n);
+}
+
 /* Any one or two wrong bits: not taken for a packet (the CRC finds them all), and the next one is. */
 static void flipped_bits_are_found(void)
 {
@@ -159,6 +177,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(a_packet_behind_a_torn_one_is_found);
+    RUN_TEST(a_crc_like_a_header_is_none);
     RUN_TEST(flipped_bits_are_found);
     RUN_TEST(after_damage_it_recovers);
     RUN_TEST(impossible_lengths_are_refused);

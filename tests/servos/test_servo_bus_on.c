@@ -230,6 +230,24 @@ static void the_first_trouble_is_told(void)
     TEST_ASSERT_EQUAL_INT32(2048 + 326, goal_of(1));
 }
 
+/* A board that never finishes a packet: the servos cannot be reached, whatever they do. */
+static void a_line_that_is_stuck_is_found_out(void)
+{
+    const servos_config config = wire_fresh(3);
+    turned_on(&config);
+    run_ms(50);
+    w.stuck = true;
+    TEST_ASSERT_TRUE(found_out_ms(3) <= SERVO_BUS_STUCK_US / 1000 + 20);
+    trouble_is(SERVO_TROUBLE_SILENT, -1, 0, 0);
+    configured(&config);
+    w.stuck = false;
+    servos_prepare(&subject, w.now_us);
+    run_ms(505);
+    w.stuck = true;
+    run_while(SERVOS_PREPARING, SERVO_BUS_STUCK_US / 1000 + 20);
+    TEST_ASSERT_EQUAL_INT(SERVOS_FAILED, subject.state);
+}
+
 /* Noise between the packets is not an answer, and harms none. */
 static void noise_between_packets_is_ignored(void)
 {
@@ -268,6 +286,7 @@ int main(void)
     RUN_TEST(two_misses_are_forgiven);
     RUN_TEST(an_error_is_told_at_once);
     RUN_TEST(the_first_trouble_is_told);
+    RUN_TEST(a_line_that_is_stuck_is_found_out);
     RUN_TEST(noise_between_packets_is_ignored);
     return UNITY_END();
 }

@@ -15,6 +15,8 @@ static void held_in_place(const servos_config *config)
         TEST_ASSERT_EQUAL_UINT8(5, w.servo[i].table[WATCHDOG]);
     }
     TEST_ASSERT_TRUE(servos_healthy(&subject));
+    TEST_ASSERT_EQUAL_INT(0, w.collisions);
+    TEST_ASSERT_TRUE(w.unread_max <= 512);
 }
 
 static void goals_then_torque_then_watchdog_each_read_back(void)
@@ -44,6 +46,80 @@ static void one_to_many_servos_with_and_without_an_echo(void)
         w.echo = i % 2 == 1;
         turned_on(&config);
         held_in_place(&config);
+    }
+}
+
+/* At every moment of the watch over the positions: no packet falls into the answers to another. */
+static void torque_may_come_at_any_moment(void)
+{
+    servos_config config = wire_fresh(100);
+    config.bus_baud = 1000000; /* where the answers of 30 take 5 ms */
+    for (int ms = 0; ms < 12; ms++) {
+        wire_fresh(100);
+        for (int i = 0; i < 100; i++) {
+            w.servo[i].table[BAUD] = 3;
+        }
+        prepared(&config);
+        run_ms(ms);
+        TEST_ASSERT_TRUE(servos_positions(&subject, goals_rad));
+        servos_torque(&subject, goals_rad, w.now_us);
+        while (!servos_started(&subject)) {
+            TEST_ASSERT_TRUE(servos_healthy(&subject));
+            tick();
+        }
+        held_in_place(&config);
+    }
+}
+
+/* Whatever goals the app has: torque first comes on in place. */
+static void torque_begins_in_place_and_goals_follow(void)
+{
+    const servos_config config = wire_fresh(3);
+    prepared(&config);
+    TEST_ASSERT_TRUE(servos_positions(&subject, goals_rad));
+    goals_rad[1] = 0.4f;
+    goals_rad[2] = float_of(0x7FC00000u);
+    servos_torque(&subject, goals_rad, w.now_us);
+    run_ms(100);
+    TEST_ASSERT_EQUAL_INT32(0, w.servo[1].jump);
+    TEST_ASSERT_EQUAL_INT32(2048 + 261, wire_get(&w.servo[1], GOAL));
+    TEST_ASSERT_EQUAL_INT(0, w.servo[2].moves);
+}
+
+/* So many turns away that it has not been kept where: such a servo gets no torque. */
+static void a_position_beyond_all_reach_gets_no_torque(void)
+{
+    for (int way = -1; way <= 1; way += 2) {
+        const servos_config config = wire_fresh(3);
+        w.servo[1].table[MODE] = 4;
+        wire_set(&w.servo[1], PRESENT, way * 1000000);
+        prepared(&config);
+        TEST_ASSERT_TRUE(servos_positions(&subject, goals_rad));
+        servos_torque(&subject, goals_rad, w.now_us);
+        run_ms(100);
+        trouble_is(SERVO_TROUBLE_FAR, 1, 2, 0);
+        TEST_ASSERT_FALSE(servos_healthy(&subject));
+        TEST_ASSERT_EQUAL_INT(0, w.servo[0].torques);
+    }
+}
+
+/* One that misses a Sync Write is found by reading back, and all are written to again. */
+static void a_lost_packet_is_made_good(void)
+{
+    static const uint8_t ADDRESSES[] = {GOAL, TORQUE, WATCHDOG};
+    for (int i = 0; i < 3; i++) {
+        const servos_config config = wire_fresh(40);
+        prepared(&config);
+        TEST_ASSERT_TRUE(servos_positions(&subject, goals_rad));
+        servos_torque(&subject, goals_rad, w.now_us);
+        while (!(w.sending && w.out[7] == SYNC_WRITE && w.out[8] == ADDRESSES[i])) {
+            tick();
+        }
+        w.servo[35].deaf_n = 1;
+        run_ms(100);
+        TEST_ASSERT_EQUAL_INT(SERVO_BUS_ON, subject.bus.state);
+        held_in_place(&config);
+        TEST_ASSERT_TRUE(count_logged(SYNC_WRITE, ADDRESSES[i]) >= 2);
     }
 }
 
@@ -171,7 +247,8 @@ static void goals_on_the_way_wait(void)
     prepared(&config);
     TEST_ASSERT_TRUE(servos_positions(&subject, goals_rad));
     servos_torque(&subject, goals_rad, w.now_us);
-    while (subject.bus.state == SERVO_BUS_STARTING) {
+    while (!servos_started(&subject)) {
+        TEST_ASSERT_TRUE(subject.bus.state == SERVO_BUS_STARTING);
         goals_rad[5] += 0.01f;
         servos_goals(&subject, goals_rad);
         tick();
@@ -189,6 +266,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(goals_then_torque_then_watchdog_each_read_back);
     RUN_TEST(one_to_many_servos_with_and_without_an_echo);
+    RUN_TEST(torque_may_come_at_any_moment);
+    RUN_TEST(torque_begins_in_place_and_goals_follow);
+    RUN_TEST(a_position_beyond_all_reach_gets_no_torque);
+    RUN_TEST(a_lost_packet_is_made_good);
     RUN_TEST(lost_packets_never_make_a_jump);
     RUN_TEST(what_a_servo_does_not_take_stops_all);
     RUN_TEST(a_struck_watchdog_gets_no_torque);

@@ -91,6 +91,8 @@ static void silence_and_noise_are_told_apart(void)
     fails((servo_request){.kind = SERVO_REQUEST_PING, .id = 1, .baud = 57600},
           SERVO_TROUBLE_GARBLED, 1, 0);
     done((servo_request){.kind = SERVO_REQUEST_PING, .id = 1, .baud = 57600}, 100);
+    TEST_ASSERT_EQUAL_UINT32(3,
+                             subject.bus.counts.damaged); /* since configured, over all restarts */
 }
 
 static void another_id(void)

@@ -114,7 +114,7 @@ static void test_a_missing_servo_is_named(void)
 {
     inject("unplug@%g+5:4");
     ask_simply(MESSAGE_ARM);
-    const message_nack *nack = refused(REASON_SERVO);
+    const message_nack *nack = refused(REASON_SERVO_SILENT);
     says("servo 4", nack->text);
     says("joint 2, phi", nack->text);
     TEST_ASSERT_EQUAL_INT(SUPERVISOR_DISARMED, state_now());
@@ -128,7 +128,7 @@ static void test_a_sick_servo_is_named(void)
 {
     inject("servo@%g+5:1");
     ask_simply(MESSAGE_ARM);
-    says("servo 1", refused(REASON_SERVO)->text);
+    says("servo 1", refused(REASON_SERVO_HARDWARE)->text);
     TEST_ASSERT_FALSE(b->host.plant.powered);
 }
 
@@ -214,9 +214,9 @@ static void test_servos_are_set_up_over_the_wire_while_disarmed(void)
     sway(1000, 10, 0.05f);
     TEST_ASSERT_EQUAL_UINT8(MESSAGE_SERVO_ASSIGN, b->newest[MESSAGE_ACK].ack.answered);
     ask((message){.type = MESSAGE_SERVO_PING, .servo_ping = {.id = 2}});
-    says("does not answer", refused(REASON_SERVO)->text);
+    says("does not answer", refused(REASON_SERVO_SILENT)->text);
     ask_simply(MESSAGE_ARM); /* the map still says 2 */
-    says("servo 2", refused(REASON_SERVO)->text);
+    says("servo 2", refused(REASON_SERVO_SILENT)->text);
     ask((message){.type = MESSAGE_SERVO_ASSIGN, .servo_assign = {.old_id = 40, .new_id = 2}});
     sway(1500, 10, 0.05f);
     ask((message){.type = MESSAGE_SERVO_TEST, .servo_test = {.id = 2, .turn_rad = 0.7f}});

@@ -63,7 +63,11 @@ class Board:
     def connect(self):
         def attempt():
             line = socket.socket(socket.AF_UNIX)
-            line.connect(self.socket)
+            try:
+                line.connect(self.socket)
+            except OSError:
+                line.close()
+                raise
             return line
         return keep_trying(attempt)
 

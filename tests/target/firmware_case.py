@@ -25,22 +25,18 @@ class FirmwareCase(unittest.TestCase):
     def setUp(self):
         self.stack = contextlib.ExitStack()
         self.addCleanup(self.stack.close)
-        self.folder = pathlib.Path(self.stack.enter_context(tempfile.TemporaryDirectory()))
-        self.board = self.line = None
+        self.board = self.line = self.folder = None
 
     def boot(self, **how):
-        """A board that has told HELLO and BOOT_REPORT; self.line overhears it."""
+        """A board, instead of the last one, that has told HELLO and BOOT_REPORT; self.line overhears it."""
+        self.stack.close()
+        self.folder = pathlib.Path(self.stack.enter_context(tempfile.TemporaryDirectory()))
         self.board = self.stack.enter_context(emulated.Board(choices.qemu, choices.elf, self.folder, held=True, **how))
         self.line = line_log.Line(self.board.connect())
         self.stack.callback(self.line.close)
         with self.board.debugger():
             pass  # with somebody to hear it, now it may go
         self.line.wait_for(line_log.BOOT_REPORT)
-
-    def reboot(self):
-        self.stack.close()
-        self.setUp()
-        self.boot()
 
     def run_program(self, *command, text=None):
         return subprocess.run([str(word) for word in command], input=text, capture_output=True, text=True, check=True,
@@ -98,6 +94,7 @@ def main():
         parser.add_argument(f"--{name}", required=True)
     parser.add_argument("--replay", help="replay_pose_log")
     parser.add_argument("--build", help="where the image's objects and their call graph are")
+    parser.add_argument("--all-tracks", action="store_true", help="of the shared ones; else one")
     parser.add_argument("--shared-tracks", type=pathlib.Path, default=pathlib.Path("/nowhere"))
     choices, rest = parser.parse_known_args()
     unittest.main(argv=[sys.argv[0], *rest], verbosity=2)

@@ -149,6 +149,12 @@ class Rod(ServoCase):
         rows = self.good_json("servo", "scan", "--last", "8")
         self.assertGreater(max(abs(row["position_rad"]) for row in rows), 0.01)
 
+    def test_a_hundred_servos(self):
+        self.device("--links", "50", "--servo-baud", "4000000")
+        self.good("params", "set", "servo_baud=4000000")
+        self.good("stream", self.write("track.txt", track(100)))
+        self.assertEqual(len(self.good_json("servo", "scan")), 100)
+
     def test_is_not_armed_without_one_of_its_servos(self):
         self.device("--inject", "unplug@0+1000:5")
         code, _, err = self.run_tool("stream", self.write("track.txt", track(150)))

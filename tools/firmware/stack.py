@@ -19,11 +19,11 @@ INDIRECT = [
     (r"\bhal->(\w+)\(", ALWAYS, BOARD, MEMBER),  # hal.h: the board fills in one
     (r"\bwatcher\.(\w+)\(", EVENTUALLY, BOARD, MEMBER),  # device.h: the simulator's log
     (r"->(force)\(", NEVER, BOARD, MEMBER),  # rod.h: a force from outside
-    (r"script\[0\]->(ask)\(b\)", ALWAYS, SERVOS, r"servo_bus_step ON = {{(\w+),"),  # ask_go: has just begun that script
-    (r"->(ask)\(b\)", ALWAYS, SERVOS, STEP + r"(\w+),"),  # servo_bus_private.h: the steps of scripts
-    (r": (servo_bus_next)\)\(b\)", ALWAYS, SERVOS, rf"(?:{STEP}\w+, |void (?={{member}}\())(\w+)"),  # took, or that
-    (r"->(lost)\(b\)", ALWAYS, SERVOS, STEP + r"\w+, \w+, (\w+)}}"),
-    (r"->(each)\(b,", ALWAYS, SERVOS, r"servo_bus_ask_many\(b, [^;]*, (\w+)\);"),
+    (r"script\[0\]->(ask)\(", ALWAYS, SERVOS, r"servo_bus_step ON = {{(\w+),"),  # ask_go: has just begun that script
+    (r"->(ask)\(", ALWAYS, SERVOS, STEP + r"(\w+),"),  # servo_bus_private.h: the steps of scripts
+    (r"->(took)\(", ALWAYS, SERVOS, STEP + r"\w+, (\w+),"),
+    (r"->(lost)\(", ALWAYS, SERVOS, STEP + r"\w+, \w+, (\w+)}}"),
+    (r"->(each)\(", ALWAYS, SERVOS, r"servo_bus_ask_many\(b, [^;]*, (\w+)\);"),
 ]
 
 FRAME_BYTES = 104 + 4  # of an exception with the FPU in use, and its alignment: ARMv7-M ARM, B1.5.7
@@ -80,7 +80,11 @@ class Graph:
         """The titles that a call may reach."""
         if target != INDIRECT_CALL:
             return [target] if target in self.frames else self.named.get(base_name(target), [])
-        text = source_text(place)
+        return [title for text in called_at(place) for title in self.pointed_to(caller, place, text)]
+
+    def pointed_to(self, caller, place, text):
+        if (name := text.partition("(")[0]) in self.named:
+            return self.named[name]
         for pattern, how, sources, finder in INDIRECT:
             if call := re.match(r"[^(;]*?" + pattern, text):
                 return [] if how == NEVER else self.set_to(how, sources, finder.format(member=call[1]))
@@ -122,13 +126,16 @@ class Graph:
         return sorted(((self.frames[t], base_name(t)) for t in seen), reverse=True)[:n]
 
 
-def source_text(place):
-    """The source from file:line:column on, as one line."""
+def called_at(place):
+    """The source of a call, from its file:line:column on; both of a choice's, `(one ? this : that)(...)`."""
     path, line, column = place.rsplit(":", 2) if place else ("", 0, 0)
     if not path or not pathlib.Path(path).exists():
-        return ""
+        return [""]
     lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()[int(line) - 1:][:3]
-    return " ".join([lines[0][int(column) - 1:], *(further.strip() for further in lines[1:])])
+    text = " ".join([lines[0][int(column) - 1:], *(further.strip() for further in lines[1:])])
+    if text.startswith((":", "?")) and (choice := re.search(r"\? (\S+) : (\S+)\)\(", lines[0])):
+        return [f"{name}(" for name in choice.groups()]
+    return [text]
 
 
 def branch_target(instruction):

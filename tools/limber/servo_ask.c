@@ -24,40 +24,21 @@ void servo_ask_error_text(uint8_t hardware_error, char *text, size_t room)
     }
 }
 
-/* The wire says in words what is wrong with a servo, and these are how they begin. A device with other words is
- * understood less well, not wrongly. */
-servo_blame servo_ask_blame(const session *s)
+bool servo_ask_is_about_servo(const session *s)
 {
-    static const struct {
-        servo_blame blame;
-        const char *words;
-    } BEGINNINGS[] = {{SERVO_SILENT, "does not answer"},
-                      {SERVO_GARBLED, "answers with noise"},
-                      {SERVO_BROKEN, "reports a hardware error"},
-                      {SERVO_BEYOND, "cannot be driven at that rate"},
-                      {SERVO_BEYOND, "is on a PWM channel that does not exist"}};
-    const message_nack *nack = &s->answer.nack;
-    if (s->request != REQUEST_REFUSED || nack->reason != REASON_SERVO) {
-        return SERVO_BLAMELESS;
-    }
-    for (size_t i = 0; i < sizeof BEGINNINGS / sizeof BEGINNINGS[0]; i++) {
-        if (strncmp(nack->text, BEGINNINGS[i].words, strlen(BEGINNINGS[i].words)) == 0) {
-            return BEGINNINGS[i].blame;
-        }
-    }
-    return SERVO_OTHERWISE;
+    const uint8_t reason = s->answer.nack.reason;
+    return s->request == REQUEST_REFUSED && reason >= REASON_SERVO && reason <= REASON_SERVO_BEYOND;
 }
 
 void servo_ask_describe(const session *s, int id, port_why text)
 {
     const message_nack *nack = &s->answer.nack;
-    const servo_blame blame = servo_ask_blame(s);
     char more[100] = "";
-    if (blame == SERVO_SILENT) {
+    if (nack->reason == REASON_SERVO_SILENT) {
         snprintf(more, sizeof more, "; limber servo scan --baud all finds those that do");
-    } else if (blame == SERVO_GARBLED) {
+    } else if (nack->reason == REASON_SERVO_GARBLED) {
         snprintf(more, sizeof more, "; connect one servo at a time");
-    } else if (blame == SERVO_BROKEN) {
+    } else if (nack->reason == REASON_SERVO_HARDWARE) {
         servo_ask_error_text((uint8_t)nack->value, more + 2, sizeof more - 2);
         memcpy(more, "; ", 2);
     } else if (nack->value > 0.0f) {
@@ -69,7 +50,7 @@ void servo_ask_describe(const session *s, int id, port_why text)
 int servo_ask_complain(const session *s, int id)
 {
     port_why text;
-    if (s->lost || servo_ask_blame(s) == SERVO_BLAMELESS) {
+    if (s->lost || !servo_ask_is_about_servo(s)) {
         return session_complain(s);
     }
     servo_ask_describe(s, id, text);

@@ -66,11 +66,11 @@ static int look_for(scan *c, uint32_t baud, int id)
         show(c, &c->s->answer.servo_info);
         return SIM_OK;
     }
-    const servo_blame blame = servo_ask_blame(c->s);
-    if (blame == SERVO_BLAMELESS || blame == SERVO_BEYOND) {
+    const uint8_t reason = c->s->answer.nack.reason;
+    if (!servo_ask_is_about_servo(c->s) || reason == REASON_SERVO_BEYOND) {
         return servo_ask_complain(c->s, id);
     }
-    if (blame != SERVO_SILENT) {
+    if (reason != REASON_SERVO_SILENT) {
         port_why text;
         servo_ask_describe(c->s, id, text);
         limber_note("%s", text);

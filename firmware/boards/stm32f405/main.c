@@ -30,7 +30,7 @@ int main(void)
         .tick_s = 1.0f / tick_hz,
         .tick_max_hz = tick_hz,
         .line_baud = LIMBER_LINK_BAUD,
-        .features = FEATURE_NODES | FEATURE_POSE_LOG | FEATURE_SETTINGS |
+        .features = FEATURE_NODES | FEATURE_POSE_LOG | FEATURE_SETTINGS | FEATURE_SERVO_ASSIGN |
                     (boot.estop_ignored ? 0u : (uint32_t)FEATURE_ESTOP_INPUT),
         .name = "limber-stm32f405",
         .build = LIMBER_BUILD,

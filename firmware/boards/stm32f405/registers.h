@@ -265,8 +265,7 @@ enum {
     MPU_CTRL_ENABLE = 1 << 0,
     MPU_CTRL_PRIVDEFENA = 1 << 2, /* the default memory map where no region lies */
     MPU_RASR_ENABLE = 1 << 0,
-    MPU_RASR_SIZE0 = 1 << 1, /* of 2^(SIZE + 1) bytes */
-    MPU_RASR_XN = 1 << 28,   /* with AP = 0: no access at all */
+    MPU_RASR_SIZE0 = 1 << 1, /* of 2^(SIZE + 1) bytes; with AP = 0 there is no access at all */
 };
 
 #endif

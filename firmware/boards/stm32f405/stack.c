@@ -13,7 +13,7 @@ void stack_guard(mpu_registers *mpu, uint32_t guard, uint32_t *bottom)
     }
     reg_write(&mpu->rnr, 0);
     reg_write(&mpu->rbar, guard);
-    reg_write(&mpu->rasr, MPU_RASR_XN | GUARD_SIZE * (uint32_t)MPU_RASR_SIZE0 | MPU_RASR_ENABLE);
+    reg_write(&mpu->rasr, GUARD_SIZE * (uint32_t)MPU_RASR_SIZE0 | MPU_RASR_ENABLE);
     reg_write(&mpu->ctrl, MPU_CTRL_ENABLE | MPU_CTRL_PRIVDEFENA);
     memory_barrier();
 }

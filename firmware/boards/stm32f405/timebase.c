@@ -54,17 +54,6 @@ void timebase_interrupt(timebase *t)
     t->ticks++;
 }
 
-/* The counter runs down to 0, where a new tick has begun, and on from the reload value. An emulator shows the 0
- * a little before the tick is pending; it lasts one count, so it is waited out. */
-static uint32_t count_left(const timebase *t)
-{
-    uint32_t left;
-    do {
-        left = reg_read(&t->systick->cvr);
-    } while (left == 0);
-    return left;
-}
-
 static uint32_t host_now_us(const timebase *t)
 {
     uint32_t ticks, now_us;
@@ -80,14 +69,15 @@ uint32_t timebase_now_us(const timebase *t)
     if (t->host_clock != NULL) {
         return host_now_us(t);
     }
+    /* the counter runs down to 0, with which the next tick begins, and on from the reload value */
     uint32_t ticks, left, waiting;
     do {
         ticks = t->ticks;
         waiting = 0;
-        left = count_left(t);
+        left = reg_read(&t->systick->cvr);
         if ((reg_read(&t->scb->icsr) & SCB_ICSR_PENDSTSET) != 0) {
             /* the counter has wrapped, perhaps only after it was read: what it shows now is of the new tick */
-            left = count_left(t);
+            left = reg_read(&t->systick->cvr);
             waiting = 1;
         }
     } while (ticks != t->ticks);

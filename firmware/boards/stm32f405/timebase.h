@@ -1,7 +1,8 @@
 /* timebase.h - ticks and microseconds, both of SysTick (ARMv7-M B3.3).
  *
  * A tick is 1 ms where the core runs at 100 MHz or more, and 10 ms where it fell back to 16 MHz, so that one
- * tick's work still fits. All time comes from here: there is no second clock to disagree with (but see timebase_emulated).
+ * tick's work still fits. All time comes from here: there is no second clock to disagree with. (On an emulator
+ * it is its host's: timebase_emulated.)
  *
  * Whether to believe the clock reached (clock.h): SYST_CALIB.TENMS reads 18,750 on this chip (RM0090 12.1.3);
  * where it reads anything else an emulator counts SysTick, at (TENMS + 1) * 800 Hz.

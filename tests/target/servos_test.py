@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""The booted image with a hundred smart servos on its bus, each a model (limber-sim servos) behind USART6."""
+import re
+import signal
+import subprocess
+import time
+
+import firmware_case
+import line_log
+from firmware_case import FirmwareCase
+
+SERVOS_N = 100
+# The wire is fast and the board thinks it slow, the slowest that a hundred servos can have: so it waits long enough for
+# answers that come through two processes. Goals go out at 20 Hz then.
+WIRE_BAUD, BOARD_BAUD = 4000000, 115200
+SETTINGS = [f"links={SERVOS_N // 2}", "spring=2000", "smoothing=50", "servo_kind=2", f"servo_baud={BOARD_BAUD}",
+            "pose_hold=200"]
+
+
+class Servos(FirmwareCase):
+    def start(self, *script):
+        """Servos, to which `script` happens, and a board with the rod they need."""
+        bus = subprocess.Popen([firmware_case.choices.sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(SERVOS_N), "--baud",
+                                str(WIRE_BAUD), *(word for fault in script for word in ("--inject", fault))],
+                               stdout=subprocess.PIPE, text=True)
+        self.addCleanup(bus.stdout.close)
+        self.addCleanup(bus.wait)
+        self.addCleanup(bus.kill)
+        port = int(re.search(r"127\.0\.0\.1:(\d+)", bus.stdout.readline())[1])
+        self.started = time.monotonic()
+        self.boot(bus_port=port)
+        self.good("params", "set", *SETTINGS)
+        return bus
+
+    def end(self, bus):
+        """What the servos have seen."""
+        bus.send_signal(signal.SIGINT)
+        return {name: int(count) for name, count in re.findall(r"^(\S[^\d]*?) +(\d+)$", bus.communicate(timeout=20)[0],
+                                                               re.MULTILINE)}
+
+    def test_a_hundred_servos_are_armed_follow_and_are_let_go(self):
+        bus = self.start()
+        start = len(self.line.frames)
+        told = self.good_json("stream", self.track(5.0))
+        self.assertTrue(told["poses"]["balances"])
+        self.assertEqual(told["poses"]["lost"], 0)
+        states = [line_log.angles(payload)[:2] for payload in self.line.of(line_log.ANGLES, start)]
+        self.assertEqual(self.states_in_order(states)[:3], ["DISARMED", "ARMING", "ACTIVE"])
+        self.assertEqual(self.good_json("info")["state"], "DISARMED")
+        seen = self.end(bus)
+        print(seen, flush=True)
+        self.assertGreaterEqual(seen["ping"], SERVOS_N)
+        self.assertEqual(seen["torque on"], SERVOS_N)
+        self.assertGreater(seen["goals"], 80 * SERVOS_N)  # of at most 20 a second, for 6 s
+        self.assertEqual(seen["goals"] % SERVOS_N, 0)
+        self.assertEqual((seen["damaged"], seen["unknown"], seen["refused"]), (0, 0, 0))
+
+    def test_one_that_is_missing_keeps_the_rest_from_being_armed(self):
+        self.start("unplug@0+600:57")
+        code, _, err = self.limber("stream", self.track())
+        self.assertEqual(code, 4)
+        self.assertRegex(err, r"servo 57 \(joint 29, theta\)")
+        told = self.good_json("info")
+        self.assertEqual(told["state"], "DISARMED")
+        self.assertNotIn("TORQUE", told["flags"])
+
+    def test_one_that_goes_missing_is_a_fault(self):
+        bus = self.start("unplug@12+600:3")
+        tool = self.start_stream()
+        self.wait_for_state("ACTIVE", seconds=self.started + 11 - time.monotonic())
+        start = len(self.line.frames)
+        self.wait_for_state("FAULT", after=start, seconds=20)
+        self.assertEqual(tool.wait(timeout=30), 4)
+        told = self.good_json("info")
+        self.assertEqual((told["state"], told["fault"]), ("FAULT", "SERVO"))
+        self.assertNotIn("TORQUE", told["flags"])
+        self.assertEqual(self.end(bus)["torque on"], SERVOS_N)
+
+
+if __name__ == "__main__":
+    firmware_case.main()
