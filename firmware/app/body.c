@@ -118,9 +118,7 @@ const float *body_goals(const body *b)
 
 void body_angles(const body *b, rod_joint *angles_rad)
 {
-    const float *goals_rad = servo_map_goals(&b->map);
     for (int servo = 0; servo < b->map.servos_n; servo++) {
-        const servo_motion *s = &b->map.servo[servo];
-        angles_rad[s->joint][s->axis] = (goals_rad[servo] - s->offset_rad) * s->sign;
+        angles_rad[servo / 2][servo % 2] = body_angle_rad(b, servo);
     }
 }

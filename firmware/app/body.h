@@ -58,7 +58,14 @@ void body_tick(body *b, const body_input *input);
 /* Goals of the servos, rad of the shaft, map.servos_n of them. */
 const float *body_goals(const body *b);
 
-/* The same as joint angles, links_n rows: what ANGLES reports. */
+/* One of them as the angle of its joint's axis: what ANGLES reports. Servo 2i is theta of joint i, 2i + 1 its phi. */
+static inline float body_angle_rad(const body *b, int servo)
+{
+    const servo_motion *s = &b->map.servo[servo];
+    return (b->map.goals_rad[servo] - s->offset_rad) * s->sign;
+}
+
+/* All of them, links_n rows. */
 void body_angles(const body *b, rod_joint *angles_rad);
 
 #endif

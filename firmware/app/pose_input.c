@@ -78,6 +78,12 @@ static void advance(pose_input *in, uint32_t now_us)
     in->now_us += elapsed_us > 0 ? elapsed_us : 0;
 }
 
+/* The accepted pose so many before the newest. */
+static const pose_kept *pose_before(const pose_input *in, int back)
+{
+    return &in->accepted[(in->newest + POSE_HISTORY_N - (unsigned)back) % POSE_HISTORY_N];
+}
+
 static int least_int(int a, int b)
 {
     return a < b ? a : b;
@@ -100,8 +106,8 @@ static void measure(pose_input *in, const pose_kept *kept, int64_t age_us)
     if (!in->anchored) {
         return;
     }
-    const int32_t elapsed_us = pose_elapsed_us(&in->accepted[0], kept);
-    const uint16_t sent_n = (uint16_t)(kept->seq - in->accepted[0].seq);
+    const int32_t elapsed_us = pose_elapsed_us(pose_before(in, 0), kept);
+    const uint16_t sent_n = (uint16_t)(kept->seq - pose_before(in, 0)->seq);
     if (elapsed_us <= 0 || in->now_us - in->accepted_us > SEQ_SURE_US) {
         return; /* the sender's clock was set, or seq may have wrapped */
     }
@@ -140,11 +146,12 @@ static pose_motion motion_to(const pose_input *in, const pose_kept *kept)
         over_us = VELOCITY_OVER_MIN_US;
     }
     int i = 0;
-    while (i + 1 < in->accepted_n && (uint32_t)pose_elapsed_us(&in->accepted[i], kept) < over_us) {
+    while (i + 1 < in->accepted_n &&
+           (uint32_t)pose_elapsed_us(pose_before(in, i), kept) < over_us) {
         i++;
     }
-    const float elapsed_s = (float)pose_elapsed_us(&in->accepted[i], kept) * 1e-6f;
-    return pose_velocity(&in->accepted[i].pose, &kept->pose, elapsed_s);
+    const float elapsed_s = (float)pose_elapsed_us(pose_before(in, i), kept) * 1e-6f;
+    return pose_velocity(&pose_before(in, i)->pose, &kept->pose, elapsed_s);
 }
 
 static void accept(pose_input *in, const pose_kept *kept, int64_t arrived_us, int64_t age_us,
@@ -159,17 +166,15 @@ static void accept(pose_input *in, const pose_kept *kept, int64_t arrived_us, in
         pose_resample_start(&in->resample, &kept->pose, captured_us, in->now_us);
     } else {
         const pose_motion newest = motion_to(in, kept);
-        const pose_rules rules = rules_of(in, pose_elapsed_us(&in->accepted[0], kept));
+        const pose_rules rules = rules_of(in, pose_elapsed_us(pose_before(in, 0), kept));
         pose_resample_add(&in->resample, &newest, captured_us, &rules);
     }
     if (restart || arrived_us - in->accepted_us >= (int64_t)in->params.hold_us) {
         in->good_us = arrived_us;
     }
     in->accepted_n = least_int(in->accepted_n + 1, POSE_HISTORY_N);
-    for (int i = in->accepted_n - 1; i > 0; i--) {
-        in->accepted[i] = in->accepted[i - 1];
-    }
-    in->accepted[0] = *kept;
+    in->newest = (in->newest + 1) % POSE_HISTORY_N;
+    in->accepted[in->newest] = *kept;
     in->accepted_us = arrived_us;
     in->anchored = true;
     in->refused_n = 0;
@@ -202,17 +207,17 @@ static pose_verdict judge(pose_input *in, const pose_sample *sample, uint32_t re
 
     pose_kept kept = {sample->pose, sample->sent_us - sample->age_us, sample->seq};
     kept.pose.orientation = pose_unit(kept.pose.orientation);
-    const quat q = kept.pose.orientation, last = in->accepted[0].pose.orientation;
+    const quat q = kept.pose.orientation, last = pose_before(in, 0)->pose.orientation;
     if (q.x * last.x + q.y * last.y + q.z * last.z + q.w * last.w < 0.0f) {
         kept.pose.orientation = (quat){-q.x, -q.y, -q.z, -q.w};
     }
     /* bytes may be given in after the tick they arrived before */
     const int64_t arrived_us = in->now_us + (int32_t)(received_us - (uint32_t)in->now_us);
-    const int32_t elapsed_us = pose_elapsed_us(&in->accepted[0], &kept);
+    const int32_t elapsed_us = pose_elapsed_us(pose_before(in, 0), &kept);
     bool restart = !in->anchored || arrived_us - in->accepted_us > POSE_SILENCE_MAX_US ||
                    elapsed_us > POSE_SILENCE_MAX_US;
     if (!restart) {
-        verdict = hand_can(in, &in->accepted[0], &kept);
+        verdict = hand_can(in, pose_before(in, 0), &kept);
         if (verdict != POSE_ACCEPTED) {
             const bool agrees =
                 in->refused_n > 0 && hand_can(in, &in->refused, &kept) == POSE_ACCEPTED;
@@ -248,7 +253,7 @@ pose_tick pose_input_tick(pose_input *in, uint32_t now_us)
             .base = pose_resample_at(&in->resample, in->now_us)->pose,
             .valid = true,
             .restart = in->restart,
-            .seq = in->accepted[0].seq,
+            .seq = pose_before(in, 0)->seq,
             .received_us = (uint32_t)in->accepted_us,
         };
     }

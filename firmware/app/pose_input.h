@@ -143,8 +143,10 @@ typedef struct {
     uint8_t session;
     pose_sequence sequence; /* and what is lost */
 
-    bool anchored;                      /* accepted[0] belongs to this session */
-    pose_kept accepted[POSE_HISTORY_N]; /* the newest first, since the last restart */
+    bool anchored; /* the newest accepted belongs to this session */
+    pose_kept accepted
+        [POSE_HISTORY_N]; /* since the last restart; the newest is at newest, then backwards, round */
+    unsigned newest;
     int accepted_n;
     int64_t accepted_us, good_us; /* when the newest came; since when the stream is good */
     pose_kept refused;

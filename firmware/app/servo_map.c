@@ -89,12 +89,16 @@ static uint8_t stop(servo_motion *s, uint32_t acted)
 
 /* The everyday case, and the same as what follow and advance would come to: the goal is where the target was, nothing
  * is near an end, and the target's own motion keeps the limits. */
-static bool keeps_up(servo_motion *s, int32_t target)
+static bool keeps_up(servo_motion *s, float target_rad)
 {
+    if (!s->target_known || !(trig_abs(target_rad) <= SERVO_REACH_RAD)) {
+        return false;
+    }
+    const int32_t target = to_units(target_rad);
     const int32_t moved = target - s->target, change = moved - s->speed;
-    const bool free = s->goal == s->target && s->max - s->goal >= s->room_for_more &&
-                      s->goal - s->min >= s->room_for_more;
-    if (!free || moved > s->rate || moved < -s->rate || change > s->accel || change < -s->accel) {
+    if (s->goal != s->target || target > s->max || target < s->min ||
+        s->max - s->goal < s->room_for_more || s->goal - s->min < s->room_for_more ||
+        moved > s->rate || moved < -s->rate || change > s->accel || change < -s->accel) {
         return false;
     }
     s->goal = s->target = target;
@@ -105,6 +109,9 @@ static bool keeps_up(servo_motion *s, int32_t target)
 
 static uint8_t follow(servo_motion *s, float target_rad)
 {
+    if (keeps_up(s, target_rad)) {
+        return 0;
+    }
     if (!is_finite(target_rad)) {
         return stop(s, SERVO_NOT_FINITE);
     }
@@ -120,9 +127,6 @@ static uint8_t follow(servo_motion *s, float target_rad)
         target = s->min;
     } else {
         target = clamp(to_units(target_rad), s->min, s->max);
-    }
-    if (s->target_known && acted == 0 && keeps_up(s, target)) {
-        return 0;
     }
     /* Move as the target moved, and besides toward it, no faster than can be braked before it. */
     const int32_t moved = s->target_known ? clamp(target - s->target, -s->rate, s->rate) : 0;

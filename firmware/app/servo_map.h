@@ -24,7 +24,7 @@
  * further out, and comes in within the limits.
  *
  * Caller-owned, no heap, no libm; main loop only. Per servo 52 bytes, and on a Cortex-M4F, counted,
- * 155 instructions where nothing limits, 190 where it brakes (a square root and a division more).
+ * 65 instructions where nothing limits, up to 200 where it brakes (a square root and a division more).
  * Sources: the discrete stopping distance is derived at braking_speed() in servo_map.c; nothing is
  * borrowed.
  */

@@ -110,7 +110,6 @@ static bool is_predicted(const device *d)
 
 static void send_angles(device *d)
 {
-    rod_joint angles_rad[ROD_MAX_LINKS];
     const int links_n = d->params.in_force.rod.links_n;
     const uint32_t now_us = d->hal->now_us(d->hal->context);
     const uint32_t acted = d->body.limited;
@@ -128,10 +127,9 @@ static void send_angles(device *d)
                   (acted & SERVO_AT_RATE ? ANGLES_LIMITED_RATE : 0) |
                   (servo_blend_done(&d->body.blend) ? 0 : ANGLES_BLENDING) |
                   (is_predicted(d) ? ANGLES_PREDICTED : 0) | (d->pose.valid ? 0 : ANGLES_NO_POSE));
-    body_angles(&d->body, angles_rad);
     for (int i = 0; i < links_n; i++) {
-        m.angles.angles_tenth_mrad[i][0] = tenth_mrad(angles_rad[i][ROD_THETA]);
-        m.angles.angles_tenth_mrad[i][1] = tenth_mrad(angles_rad[i][ROD_PHI]);
+        m.angles.angles_tenth_mrad[i][ROD_THETA] = tenth_mrad(body_angle_rad(&d->body, 2 * i));
+        m.angles.angles_tenth_mrad[i][ROD_PHI] = tenth_mrad(body_angle_rad(&d->body, 2 * i + 1));
     }
     (void)link_send(&d->link, &m, now_us);
 }

@@ -82,6 +82,8 @@ typedef struct {
     bool (*bus_sending)(void *context);
     size_t (*bus_read)(void *context, uint8_t *bytes, size_t room);
     void (*bus_abort)(void *context);
+    /* How much later than its bytes take an answer may be seen: 0, but where an emulator's host carries them. */
+    uint32_t bus_slack_us;
 
     /* The e-stop input: true means stop. */
     bool (*estop_pressed)(void *context);

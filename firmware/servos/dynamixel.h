@@ -7,8 +7,8 @@
  * what the length counts, but for the CRC, a further FD is stuffed in behind it, so that the header with its 00
  * stands nowhere else. The CRC-16 (polynomial 8005, from 0, not reflected) covers all before it.
  *
- * Source: ROBOTIS e-Manual, DYNAMIXEL Protocol 2.0: 3 Instruction Packet, 4 Status Packet, 5 Packet Process,
- * 6 Instruction Details; CRC Calculation. Caller-owned memory, no state but what is passed in, main loop or
+ * Source: ROBOTIS e-Manual, page DYNAMIXEL Protocol 2.0, sections Instruction Packet, Status Packet, Packet Process and
+ * Instruction Details; page CRC Calculation. Caller-owned memory, no state but what is passed in, main loop or
  * interrupt alike.
  */
 #ifndef LIMBER_DYNAMIXEL_H

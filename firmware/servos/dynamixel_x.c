@@ -1,7 +1,7 @@
 /* dynamixel_x.c - which X series servos there are, and their rates; see dynamixel_x.h. */
 #include "dynamixel_x.h"
 
-/* e-Manual XL430-W250, 2.4.5 Baud Rate. XL330 and XC330 end with 4 Mbaud. */
+/* e-Manual XL430-W250, Baud Rate(8). XL330 and XC330 end with 4 Mbaud. */
 static const uint32_t BAUDS[DXL_X_BAUD_CODES_N] = {9600,    57600,   115200,  1000000,
                                                    2000000, 3000000, 4000000, 4500000};
 

@@ -1,8 +1,8 @@
 /* dynamixel_x.h - the Dynamixel X series: what of its control table is used, and its units.
  *
- * Source: ROBOTIS e-Manual, XL430-W250 and XM430-W350: 2.2 Control Table of EEPROM Area, 2.3 Control Table of RAM
- * Area, and the sections of 2.4 named after each item. The tables of all models listed at dxl_x_accepts
- * agree in these.
+ * Source: ROBOTIS e-Manual, pages XL430-W250 and XM430-W210, sections Control Table of EEPROM Area, Control Table of
+ * RAM Area and those of Control Table Description that are named after each item. The tables of all models that
+ * dxl_x_accepts lets in agree in these.
  */
 #ifndef LIMBER_DYNAMIXEL_X_H
 #define LIMBER_DYNAMIXEL_X_H

@@ -12,7 +12,8 @@
  *            servo before the next is written: nobody answers a Sync Write, and a servo that missed its goal would
  *            turn to a goal of long ago as soon as it has torque. Where one holds another value all are written to
  *            again, twice; then it is in trouble. The goals written here are the positions read last, whatever the
- *            app wants; its goals follow as soon as all is done.
+ *            app wants; its goals follow as soon as all is done. (Where Drive Mode says Torque On by Goal Update, the
+ *            first of the three brings torque already: in place, too.)
  *   on       The newest goals in one Sync Write. Whenever nothing newer waits, and at least every SERVO_BUS_ASK_US,
  *            one servo in turn is asked for its Hardware Error Status (its answer also carries the alert bit, and
  *            that it is alive): a round takes at most that time for each. One that misses is the next to be asked
@@ -27,7 +28,7 @@
  * Each question is put up to SERVO_BUS_TRIES times. The wire may or may not bring back what is sent: an
  * instruction that comes in is such an echo. A late answer counts as a stray, unless the same is being asked again.
  *
- * Source: ROBOTIS e-Manual, DYNAMIXEL Protocol 2.0; XL430-W250, 2.4 (Bus Watchdog, Torque Enable, Return Delay Time).
+ * Source: ROBOTIS e-Manual, DYNAMIXEL Protocol 2.0; XL430-W250: Bus Watchdog, Torque Enable, Drive Mode, Goal Position.
  * Cost on a Cortex-M4, 100 servos: servo_bus_goals 1,500 instructions, the tick that sends them 6,600, one that asks
  * 900; each byte that comes back 55. Caller-owned, no heap, main loop only.
  */

@@ -56,8 +56,8 @@ static void put(servo_bus *b, size_t packet_n, int answers_n)
     q->state = QUESTION_OPEN;
     q->residue_n = 0;
     q->since_us = b->now_us;
-    q->patience_us =
-        wire_us(b->baud, (uint32_t)packet_n) + (uint32_t)answers_n * answer_us + MARGIN_US;
+    q->patience_us = wire_us(b->baud, (uint32_t)packet_n) + (uint32_t)answers_n * answer_us +
+                     MARGIN_US + b->hal->bus_slack_us;
     q->tries--;
     servo_bus_tell(b, packet_n); /* what cannot be sent has no answer */
 }

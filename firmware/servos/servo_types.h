@@ -24,7 +24,7 @@ typedef enum {
     SERVO_TROUBLE_NONE,
     SERVO_TROUBLE_SILENT, /* does not answer */
     SERVO_TROUBLE_GARBLED, /* bytes come, but no whole packet: another baud rate, or two with one id */
-    SERVO_TROUBLE_STATUS, /* refused an instruction: detail is its status error, e-Manual Protocol 2.0, 4.3 */
+    SERVO_TROUBLE_STATUS,   /* refused an instruction: detail is its status error (dynamixel.h) */
     SERVO_TROUBLE_HARDWARE, /* reports a hardware error: detail is its Hardware Error Status */
     SERVO_TROUBLE_MODEL,    /* not one of the X series: detail is its model number */
     SERVO_TROUBLE_BAUD,     /* the board, or a servo, cannot make that rate */

@@ -20,7 +20,7 @@ enum {
     WIRE_BOOT_US = 400000,
 };
 
-/* Control table, e-Manual XL430-W250, 2.2 and 2.3. */
+/* Control table, e-Manual XL430-W250: of EEPROM Area, of RAM Area. */
 enum {
     MODEL = 0,
     ID = 7,

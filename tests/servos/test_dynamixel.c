@@ -1,5 +1,5 @@
-/* test_dynamixel.c - packets byte for byte as in the ROBOTIS e-Manual, DYNAMIXEL Protocol 2.0, section 6 Instruction
- * Details, there always "Example"; stuffing (5 Packet Process) on vectors of our own. */
+/* test_dynamixel.c - packets byte for byte as in the ROBOTIS e-Manual, page DYNAMIXEL Protocol 2.0, section Instruction
+ * Details: the example of each instruction. Stuffing (section Packet Process) on vectors of our own. */
 #include "dynamixel.h"
 
 #include <string.h>
@@ -51,7 +51,7 @@ static void says(dxl_packet p, uint8_t id, uint8_t instruction, uint8_t error, c
     TEST_ASSERT_EQUAL_STRING(expected, text);
 }
 
-/* 6.1 Ping: example 1, and 2 (to all). */
+/* Ping, examples 1 and 2 (to all). */
 static void ping_and_its_answers(void)
 {
     size_t n = dxl_ping(packet, ROOM, 1);
@@ -70,7 +70,7 @@ static void ping_and_its_answers(void)
     IS(n, 0xFF, 0xFF, 0xFD, 0x00, 0x02, 0x07, 0x00, 0x55, 0x00, 0x06, 0x04, 0x26, 0x6F, 0x6D);
 }
 
-/* 6.2 Read: Present Position of an XM430-W210, 166. */
+/* Read: Present Position of an XM430-W210, 166. */
 static void read_and_its_answer(void)
 {
     size_t n = dxl_read(packet, ROOM, 1, DXL_X_PRESENT_POSITION, 4);
@@ -83,7 +83,7 @@ static void read_and_its_answer(void)
     TEST_ASSERT_EQUAL_UINT32(166, dxl_u32(p.params));
 }
 
-/* 6.3 Write: 512 to Goal Position. */
+/* Write: 512 to Goal Position. */
 static void write_and_its_answer(void)
 {
     size_t n = dxl_write(packet, ROOM, 1, DXL_X_GOAL_POSITION, 4, 512);
@@ -95,7 +95,7 @@ static void write_and_its_answer(void)
     says(decoded(packet, n), 1, DXL_STATUS, 0, "");
 }
 
-/* 6.7 Reboot; its answer is that to a write. */
+/* Reboot; its answer is that to a write. */
 static void reboot(void)
 {
     const size_t n = dxl_reboot(packet, ROOM, 1);
@@ -103,7 +103,7 @@ static void reboot(void)
     says(decoded(packet, n), 1, DXL_REBOOT, 0, "");
 }
 
-/* 6.9 Sync Read: Present Position of two, 166 and 2079. */
+/* Sync Read: Present Position of two, 166 and 2079. */
 static void sync_read_and_its_answers(void)
 {
     dxl_sync_open(packet, DXL_X_PRESENT_POSITION, 4);
@@ -118,7 +118,7 @@ static void sync_read_and_its_answers(void)
     IS(n, 0xFF, 0xFF, 0xFD, 0x00, 0x02, 0x08, 0x00, 0x55, 0x00, 0x1F, 0x08, 0x00, 0x00, 0xBA, 0xBE);
 }
 
-/* 6.10 Sync Write: Goal Position of two, 150 and 170. */
+/* Sync Write: Goal Position of two, 150 and 170. */
 static void sync_write(void)
 {
     dxl_sync_open(packet, DXL_X_GOAL_POSITION, 4);

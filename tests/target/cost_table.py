@@ -6,10 +6,13 @@ CORE_HZ = 168e6
 LINKS_N = (4, 10, 20, 50)
 HEAD = """# What it costs on the Cortex-M4F
 
-Made by `tests/target/cost.py --update`; do not edit. Instructions are counted, exactly, under QEMU, the dearest of a
-hundred ticks (compiler: {compiler}). Cycles are estimated from which instructions they are (the rules and their sources:
-`tests/target/cycles.py`): the first number with all of flash in the chip's cache, the second as if no jump and no
-constant ever were. No board has measured them yet.
+Made by `tools/dev cost`; do not edit. For a rod of N links with 2 N servos on a bus of 4 Mbaud.
+
+Instructions are counted, exactly, under QEMU: of a hundred ticks the dearest. Cycles are estimated from which
+instructions they are (rules and sources: `tests/target/cycles.py`): the first number with all of flash in the
+chip's cache, the second as if no jump and no constant ever were. No board has measured them yet.
+
+Compiler: {compiler}.
 """
 PARTS = [  # name in the counts, what it is
     ("decode", "a POSE from bytes to message"),
@@ -18,9 +21,14 @@ PARTS = [  # name in the counts, what it is
     ("blend_limits", "blend, and the limits of all servos"),
     ("servo_encode", "goals of all servos as one Sync Write"),
     ("angles_reply", "ANGLES packed, framed and queued"),
-    ("tick", "**the whole tick**, with all of these"),
-    ("tick_full", "the same, with HEARTBEAT and STATS as well"),
+    ("tick", "**the whole tick**, all of these in it"),
+    ("tick_full", "the same, with HEARTBEAT and STATS"),
 ]
+INTERRUPTS = {
+    "interrupt_byte_in": "a byte has come in, on the line or the bus",
+    "interrupt_byte_out": "a byte may go out",
+    "interrupt_tick": "the tick",
+}
 MORE = [
     ("step_no_smoothing", "the rod without smoothing"),
     ("step_hold_2", "the rod in two steps a tick"),
@@ -49,13 +57,13 @@ def time(counts):
 
 
 def interrupts(counts):
-    names = sorted(part for part, _ in counts if part.startswith("interrupt_"))
+    names = [name for name in INTERRUPTS if (name, 0) in counts]
     if names:
-        yield from ("", "## Interrupts, beside that", "", "On average, each time it strikes; entry and return, 12 cycles "
+        yield from ("", "## Interrupts, beside that", "", "Each time it strikes; entry and return, 12 cycles "
                     "each where nothing waits (TRM 3.9), not included.", "", "| | instructions · cycles |", "|---|---|")
         for name in names:
-            c = next(count for (part, _), count in counts.items() if part == name)
-            yield f"| {name.removeprefix('interrupt_')} | {c.instructions:,} · {c.cycles:,} … {c.cold:,} |"
+            c = counts[name, 0]
+            yield f"| {INTERRUPTS[name]} | {c.instructions:,} · {c.cycles:,} … {c.cold:,} |"
 
 
 def write(counts, compiler):

@@ -82,7 +82,7 @@ class Images(unittest.TestCase):
                      "int main(void) { return filler[(unsigned)n * 9999]; }")
 
     def graph(self, text):
-        return stack.Graph(self.build(text), self.folder, self.folder)
+        return stack.Graph(self.build(text), [self.folder], self.folder)
 
     def why_unknown(self, text):
         with self.assertRaises(stack.Unknown) as raised:

@@ -8,7 +8,7 @@ import sys
 import firmware_case
 import line_log
 from emulated import PC, SP
-from firmware_case import FirmwareCase
+from firmware_case import FirmwareCase, again_if_too_busy
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "firmware"))
 import elf  # noqa: E402  (where they are found must be said first)
@@ -41,7 +41,8 @@ class Faults(FirmwareCase):
             self.at_start_of_tick(gdb)
             change(gdb)
         told = line_log.boot_report(self.line.wait_for(line_log.BOOT_REPORT, after=start))
-        beat = line_log.heartbeat(self.line.wait_for(line_log.HEARTBEAT, after=start + 1, good=lambda payload: (
+        start = self.line.end_of_last(line_log.BOOT_REPORT)
+        beat = line_log.heartbeat(self.line.wait_for(line_log.HEARTBEAT, after=start, good=lambda payload: (
             line_log.heartbeat(payload)["state"] not in ("BOOT", "SELFTEST"))))
         self.assertEqual((beat["state"], beat["torque"], beat["fault"]), ("FAULT", False, told["fault"]))
         return told
@@ -108,12 +109,14 @@ class Faults(FirmwareCase):
         self.assertEqual((told["state"], told["fault"]), ("FAULT", "FLASH"))
         self.can_be_cleared()
 
+    @again_if_too_busy
     def test_the_stack_stays_within_what_the_report_foresees(self):
         graph = stack.Graph(self.image, firmware_case.choices.build, report.ROOT)
         handlers = {name for name in elf.vectors(self.image)[1] if name}
         (most, _), interrupts = stack.worst(graph, handlers, report.OWN_STACK)
         most += sum(bytes_n for bytes_n, _ in interrupts)
         bottom, top = self.symbols["stack_bottom"], self.symbols["stack_top"]
+        self.boot()
         with self.board.debugger() as gdb:
             self.at_start_of_tick(gdb)
             free = range(bottom + 64, gdb.register(SP) - 64)  # the board's own pattern stays
@@ -132,7 +135,7 @@ class Faults(FirmwareCase):
         self.good("params", "set", "links=64", "spring=2000")
         self.good("preset", "whip")
         self.good("params", "set", "links=64", "spring=2000", "smoothing=50", "nodes_rate=10", "pose_hold=200")
-        self.good("stream", self.track())
+        self.stream(self.track())
         self.limber("params", "save")  # fails here: see above
 
 

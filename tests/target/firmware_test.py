@@ -3,13 +3,12 @@
 
 What goes wrong inside the board is faults_test.py's, the servo bus servos_test.py's.
 """
-import json
 import random
 import time
 
 import firmware_case
 import line_log
-from firmware_case import FirmwareCase
+from firmware_case import FirmwareCase, again_if_too_busy
 
 
 def tenth_mrad(bits):
@@ -52,24 +51,13 @@ class Firmware(FirmwareCase):
                 with self.subTest(links=links_n, track=track):
                     self.stream_and_compare(track, links_n)
 
-    def stream(self, track, settings):
-        """What limber stream tells, and the frames of it. Where the machine was too busy to let poses through for the
-        0.2 s that the device waits at most, once more."""
-        for attempts_left in (2, 1, 0):
-            self.boot()
-            self.good("params", "set", *settings, "pose_hold=200", "pose_log=1")
-            start = len(self.line.frames)
-            code, out, err = self.limber("stream", "--json", "--resample", "100", track or self.track())
-            if code == 4 and "poses stayed away" in err and attempts_left:
-                print("this machine was too busy to stream; once more", flush=True)
-                continue
-            self.assertEqual(code, 0, err)
-            return json.loads(out), start
-        return None
-
+    @again_if_too_busy
     def stream_and_compare(self, track, links_n):
         settings = [f"links={links_n}", f"spring={2000 if links_n > 20 else 50}", "smoothing=50"]
-        told, start = self.stream(track, settings)
+        self.boot()
+        self.good("params", "set", *settings, "pose_hold=200", "pose_log=1")
+        start = len(self.line.frames)
+        told = self.stream("--resample", "100", track or self.track())
         poses = told["poses"]
         self.assertTrue(poses["balances"])
         self.assertEqual(poses["lost"], 0)
@@ -93,8 +81,10 @@ class Firmware(FirmwareCase):
         self.assertGreater(compared, 0.09 * len(log))  # one in ten ticks has ANGLES
         self.assertGreater(len(moved), 0.3 * compared)  # a rod that stood still would prove nothing
 
+    @again_if_too_busy
     def test_noise_between_the_frames_and_in_them(self):
         rng = random.Random(4)
+        self.boot()
         for _ in range(20):
             self.line.device.sendall(rng.randbytes(1000))
             time.sleep(0.02)
@@ -107,10 +97,8 @@ class Firmware(FirmwareCase):
             return bytes(b ^ 1 << rng.randrange(8) if rng.random() < 0.0005 else b for b in data)
         self.good("params", "set", "pose_hold=200")
         self.line.spoil = spoil
-        code, out, err = self.limber("stream", "--json", self.track())
+        poses = self.stream(self.track())["poses"]
         self.line.spoil = None
-        self.assertEqual(code, 0, err)
-        poses = json.loads(out)["poses"]
         self.assertTrue(poses["balances"])
         self.assertGreater(poses["lost"], 0)
         self.assertGreater(poses["accepted"], 0.9 * poses["sent"])

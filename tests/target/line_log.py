@@ -129,7 +129,7 @@ class Line:
                     self.frames.append((time.monotonic(), *frame))
                 tool = self.pass_on(tool, data)
             if tool in ready:
-                data = tool.recv(65536)
+                data = self.hear(tool)
                 if data:
                     self.device.sendall(self.spoil(data) if self.spoil else data)
                 else:
@@ -142,6 +142,13 @@ class Line:
             tool.close()
 
     @staticmethod
+    def hear(tool):
+        try:
+            return tool.recv(65536)
+        except OSError:  # it has gone without a word
+            return b""
+
+    @staticmethod
     def pass_on(tool, data):
         try:
             if tool:
@@ -150,6 +157,10 @@ class Line:
         except OSError:  # it has gone
             tool.close()
             return None
+
+    def end_of_last(self, kind):
+        """How many frames there are up to the last of that type."""
+        return 1 + max(n for n, (_, found, _) in enumerate(self.frames) if found == kind)
 
     def of(self, kind, after=0):
         """Payloads of that type, from the after-th frame on."""

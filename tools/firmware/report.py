@@ -2,7 +2,7 @@
 """What a firmware image takes of the board, against what it may take. Exit 1 over a budget, or where something is in
 the image that must not be (check_elf.py).
 
-    report.py IMAGE.elf --build FOLDER_OF_ITS_OBJECTS
+    report.py IMAGE.elf --build FOLDER_OF_ITS_OBJECTS...
 """
 import argparse
 import pathlib
@@ -61,7 +61,7 @@ def check_stack(graph, image):
     return faults
 
 
-def report(path, build):
+def report(path, builds):
     """Prints it; returns what is wrong, as sentences."""
     faults = check_elf.check(path)
     print(pathlib.Path(path).name)
@@ -70,7 +70,7 @@ def report(path, build):
         if bytes_n > most:
             faults.append(f"{name}: {bytes_n:,} bytes, and {most:,} are all it may take")
     try:
-        return faults + check_stack(stack.Graph(path, build, ROOT), path)
+        return faults + check_stack(stack.Graph(path, builds, ROOT), path)
     except stack.Unknown as why:
         return [*faults, f"stack: {why}"]
 
@@ -78,7 +78,7 @@ def report(path, build):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("image")
-    parser.add_argument("--build", required=True, help="where its objects and their .ci files are")
+    parser.add_argument("--build", required=True, nargs="+", help="where its objects and their .ci files are")
     choices = parser.parse_args()
     faults = report(choices.image, choices.build)
     for fault in faults:

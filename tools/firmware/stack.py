@@ -39,14 +39,14 @@ def base_name(title):
 
 
 class Graph:
-    def __init__(self, image, build, root):
+    def __init__(self, image, builds, root):
         self.root = pathlib.Path(root)
         self.frames, self.calls, self.kinds = {}, {}, {}
         self.memo = {}
-        for path in sorted(pathlib.Path(build).rglob("*.ci")):
+        for path in sorted(path for build in builds for path in pathlib.Path(build).rglob("*.ci")):
             self.read_ci(path.read_text(encoding="utf-8"))
         if not self.frames:
-            raise Unknown(f"no call graph under {build}: compile with -fcallgraph-info=su")
+            raise Unknown(f"no call graph under {', '.join(map(str, builds))}: compile with -fcallgraph-info=su")
         self.named = {}
         for title in self.frames:
             self.named.setdefault(base_name(title), []).append(title)

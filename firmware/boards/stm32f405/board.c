@@ -24,6 +24,9 @@ static pwm pulses;
 static flash settings_flash;
 static watchdog watch;
 static bool emulated;
+
+enum { EMULATED_SLACK_US = 20000 }; /* bytes of the emulated bus go through another process */
+
 static uint8_t line_rx[BOARD_LINK_RX_BYTES], line_tx[BOARD_LINK_TX_BYTES];
 static uint8_t bus_rx[BOARD_BUS_RX_BYTES], bus_tx[BOARD_BUS_TX_BYTES];
 
@@ -272,6 +275,7 @@ void board_start(hal *hal, hal_boot *boot)
         timebase_emulated(&clock_ticks, TIM2);
     }
     *hal = BOARD_HAL;
+    hal->bus_slack_us = emulated ? EMULATED_SLACK_US : 0;
 }
 
 uint32_t board_tick_hz(void)

@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 typedef struct {
     uint8_t *bytes;
@@ -29,6 +30,13 @@ static inline size_t ring_free(const ring *r)
     return r->size - ring_used(r);
 }
 
+/* Of n bytes from a count on: so many lie before the end of the memory, the others at its start. */
+static inline size_t ring_to_end(const ring *r, uint32_t at, size_t n)
+{
+    const size_t left = r->size - (at & (r->size - 1));
+    return n < left ? n : left;
+}
+
 /* All of them or, where there is no room, none. */
 static inline bool ring_put(ring *r, const uint8_t *bytes, size_t bytes_n)
 {
@@ -36,9 +44,9 @@ static inline bool ring_put(ring *r, const uint8_t *bytes, size_t bytes_n)
     if (bytes_n > ring_free(r)) {
         return false;
     }
-    for (uint32_t i = 0; i < bytes_n; i++) {
-        r->bytes[(in + i) & (r->size - 1)] = bytes[i];
-    }
+    const size_t to_end = ring_to_end(r, in, bytes_n);
+    memcpy(r->bytes + (in & (r->size - 1)), bytes, to_end);
+    memcpy(r->bytes, bytes + to_end, bytes_n - to_end);
     atomic_signal_fence(memory_order_release);
     r->in = in + (uint32_t)bytes_n;
     return true;
@@ -50,9 +58,9 @@ static inline size_t ring_take(ring *r, uint8_t *bytes, size_t room)
     const uint32_t out = r->out;
     const size_t used = ring_used(r), n = used < room ? used : room;
     atomic_signal_fence(memory_order_acquire);
-    for (uint32_t i = 0; i < n; i++) {
-        bytes[i] = r->bytes[(out + i) & (r->size - 1)];
-    }
+    const size_t to_end = ring_to_end(r, out, n);
+    memcpy(bytes, r->bytes + (out & (r->size - 1)), to_end);
+    memcpy(bytes + to_end, r->bytes, n - to_end);
     atomic_signal_fence(memory_order_release);
     r->out = out + (uint32_t)n;
     return n;

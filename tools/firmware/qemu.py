@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Boots the firmware's image on an emulated board (QEMU, olimex-stm32-h405) and says where to stream to. Ends with Ctrl-C.
+
+    tools/dev qemu                        # then, elsewhere: limber stream --port tcp:127.0.0.1:PORT track.txt
+    tools/dev qemu --links 50 --servos    # with a model of a hundred smart servos on its bus
+
+It keeps to real time as far as this machine lets it; each byte on a line costs it about 10 us, so some 50 KB a second are
+all it can carry. Settings are not kept: the emulator has no flash to write. A client that stays connected and
+stops reading stops the whole board until it reads again.
+"""
+import argparse
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+BUILD = pathlib.Path(__file__).resolve().parents[2] / "build"
+SERVO_BAUD = 115200  # the board then waits long enough for answers that come through two processes
+SERVOS_MAX = 128
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+def give_up(text):
+    print(f"qemu: {text}", file=sys.stderr)
+    return 1
+
+
+def start_servos(sim, servos_n):
+    """(process, its port)"""
+    process = subprocess.Popen([sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(servos_n), "--baud", "4000000"],
+                               stdout=subprocess.PIPE, text=True)
+    told = re.search(r"127\.0\.0\.1:(\d+)", process.stdout.readline())
+    return process, told and int(told[1])
+
+
+def start_board(qemu, image, port, bus_port):
+    bus = f"socket,id=bus,host=127.0.0.1,port={bus_port},nodelay=on" if bus_port else "null,id=bus"
+    return subprocess.Popen([
+        qemu, "-M", "olimex-stm32-h405", "-display", "none", "-monitor", "none", "-kernel", str(image),
+        "-chardev", f"socket,id=line,host=127.0.0.1,port={port},server=on,wait=off,nodelay=on", "-chardev", bus,
+        "-serial", "chardev:line", *["-serial", "null"] * 4, "-serial", "chardev:bus"], stdin=subprocess.DEVNULL)
+
+
+def set_up(limber, port, choices):
+    """What --links and --servos ask for, told as a user would. False where the board does not take it."""
+    settings = [f"links={choices.links}"] if choices.links else []
+    if choices.servos:
+        settings += ["servo_kind=2", f"servo_baud={SERVO_BAUD}"]
+    if not settings:
+        return True
+    time.sleep(0.5)  # it starts
+    told = subprocess.run([limber, "params", "set", *settings, "--port", f"tcp:127.0.0.1:{port}"], capture_output=True,
+                          text=True, check=False)
+    print(told.stdout + told.stderr, end="")
+    return told.returncode == 0
+
+
+def serve(choices, children):
+    bus_port, port = None, choices.port or free_port()
+    if choices.servos:
+        servos, bus_port = start_servos(choices.sim, 2 * choices.links if choices.links else SERVOS_MAX)
+        children.append(servos)
+        if not bus_port:
+            return give_up("limber-sim servos did not start")
+    board = start_board(choices.qemu, choices.elf, port, bus_port)
+    children.append(board)
+    if not set_up(choices.limber, port, choices):
+        return 1
+    print(f"limber ... --port tcp:127.0.0.1:{port}    (Ctrl-C ends it)", flush=True)
+    status = board.wait()
+    return status and give_up(f"QEMU ended with {status}")
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="tools/dev qemu", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--links", type=int, help="links of the rod; with --servos at most 64")
+    parser.add_argument("--servos", action="store_true", help="smart servos on the bus, two a link")
+    parser.add_argument("--port", type=int, help="TCP port on 127.0.0.1 (any)")
+    parser.add_argument("--elf", type=pathlib.Path, default=BUILD / "stm32f405" / "limber-stm32f405.elf")
+    parser.add_argument("--qemu", default="qemu-system-arm")
+    parser.add_argument("--sim", default=BUILD / "host" / "limber-sim")
+    parser.add_argument("--limber", default=BUILD / "host" / "limber")
+    choices = parser.parse_args()
+    if not choices.elf.exists():
+        return give_up(f"no {choices.elf}: tools/dev firmware makes it")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    children = []
+    try:
+        return serve(choices, children)
+    except KeyboardInterrupt:
+        print()
+        return 0
+    finally:
+        for child in children:
+            child.terminate()
+            child.wait()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
