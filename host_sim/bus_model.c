@@ -233,7 +233,7 @@ static bool packet_ends(bus_packet_end *e, uint8_t byte)
     } else if (e->n == 5) {
         e->id = byte;
     } else if (e->n == 7) {
-        e->end_n = 7 + (size_t)(byte << 8 | (e->last >> 8 & 0xFF));
+        e->end_n = 7u + ((uint32_t)byte << 8 | (e->last >> 8 & 0xFFu));
     }
     return e->n > 7 && e->n == e->end_n;
 }
