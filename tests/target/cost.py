@@ -19,8 +19,8 @@ import cycles
 import emulator
 
 STORED = pathlib.Path(__file__).resolve().parent.parent / "data" / "instruction_counts.txt"
-HEADER = """# Instructions on the Cortex-M4F, counted under QEMU, the dearest of a hundred ticks; and estimated cycles, with
-# flash from the cache and without. Written by tests/target/cost.py --update.
+HEADER = """# Instructions on the Cortex-M4F, counted under QEMU, the dearest of a hundred ticks; and estimated cycles,
+# with flash from the cache and without. Written by tests/target/cost.py --update.
 # part  N  instructions  cycles  cycles without cache
 # compiler: {}
 """

@@ -52,15 +52,15 @@ def time(counts):
     for n in LINKS_N:
         if tick := counts.get(("tick", n)):
             low, high = tick.cycles / CORE_HZ, tick.cold / CORE_HZ
-            yield (f"- N = {n}: {low * 1e6:.0f} … {high * 1e6:.0f} µs of the 1,000 of a tick at {CORE_HZ / 1e6:.0f} MHz, "
-                   f"{low * 1e5:.0f} … {high * 1e5:.0f} %")
+            yield (f"- N = {n}: {low * 1e6:.0f} … {high * 1e6:.0f} µs of the 1,000 of a tick at "
+                   f"{CORE_HZ / 1e6:.0f} MHz, {low * 1e5:.0f} … {high * 1e5:.0f} %")
 
 
 def interrupts(counts):
     names = [name for name in INTERRUPTS if (name, 0) in counts]
     if names:
-        yield from ("", "## Interrupts, beside that", "", "Each time it strikes; entry and return, 12 cycles "
-                    "each where nothing waits (TRM 3.9), not included.", "", "| | instructions · cycles |", "|---|---|")
+        yield from ("", "## Interrupts, beside that", "", "Each time it strikes; entry and return, 12 cycles each where "
+                    "nothing waits (TRM 3.9), not included.", "", "| | instructions · cycles |", "|---|---|")
         for name in names:
             c = counts[name, 0]
             yield f"| {INTERRUPTS[name]} | {c.instructions:,} · {c.cycles:,} … {c.cold:,} |"

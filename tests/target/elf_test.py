@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
 """The checks of a firmware image can fail: small programs that each break one rule are refused, by name; and the
 stack's depth is right where it can be counted by hand."""
+import contextlib
+import io
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "firmware"))
 import check_elf  # noqa: E402  (where they are found must be said first)
+import report  # noqa: E402
 import stack  # noqa: E402
 
 FLAGS = ["-std=c11", "-O2", "-mcpu=cortex-m4", "-mthumb", "-mfpu=fpv4-sp-d16", "-mfloat-abi=hard", "-ffp-contract=off",
@@ -17,6 +21,8 @@ LINKER_SCRIPT = """
 ENTRY(reset_handler)
 stack_top = 0x20020000;
 end = 0x20010000;
+guard_start = 0x2001E000;
+stack_bottom = 0x2001F000;
 SECTIONS
 {
     .text %s : { KEEP(*(.vectors)) *(.text*) *(.rodata*) }
@@ -83,6 +89,24 @@ class Images(unittest.TestCase):
 
     def graph(self, text):
         return stack.Graph(self.build(text), [self.folder], self.folder)
+
+    def reported(self, text, **budgets):
+        image = self.build(text)
+        with contextlib.ExitStack() as patches:
+            for name, value in {"OWN_STACK": {}, **budgets}.items():
+                patches.enter_context(mock.patch.object(report, name, value))
+            patches.enter_context(contextlib.redirect_stdout(io.StringIO()))
+            return report.report(image, [self.folder])
+
+    def test_budgets(self):
+        self.assertEqual(self.reported(PLAIN), [])
+        self.assertRegex(self.reported(PLAIN, FLASH_MAX_BYTES=100)[0], "flash: .* and 100 are all")
+        much = "char much[50000]; int main(void) { much[n] = 1; return much[n + 1]; }"
+        self.assertRegex(self.reported(much)[0], "SRAM: .* and 49,152 are all")
+        deep = "int main(void) { volatile char room[5000]; room[n] = 1; return room[n + 1]; }"
+        faults = self.reported(deep)
+        self.assertRegex(faults[0], "stack: 5,.* at worst, and there are 4,096")
+        self.assertRegex(faults[1], "frame of main, 5,.* can step over the guard's 4,096")
 
     def why_unknown(self, text):
         with self.assertRaises(stack.Unknown) as raised:

@@ -8,18 +8,17 @@
 What goes wrong in the image is provoked from outside: the image is the one that is flashed.
 """
 import contextlib
+import pathlib
 import socket
 import subprocess
+import sys
 import tempfile
 import time
 
-SP, LR, PC = 13, 14, 15
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "firmware"))
+from qemu import board_command, free_port  # noqa: E402  (where it is found must be said first)
 
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
+SP, PC = 13, 15
 
 
 def keep_trying(what, timeout_s=5.0):
@@ -34,19 +33,15 @@ def keep_trying(what, timeout_s=5.0):
 
 
 class Board:
-    """USART1 is a socket in the folder: each byte is a packet, and TCP would take most of the machine for that. USART6 is
-    connected to 127.0.0.1:bus_port where that is given. With `held` the processor waits for the debugger. Ends QEMU, and
-    only this one, on leaving."""
+    """USART1 is a socket in the folder: each byte is a packet, and TCP would take most of the machine for that. USART6
+    is connected to 127.0.0.1:bus_port where that is given. With `held` the processor waits for a debugger to come
+    and go. Ends QEMU, and only this one, on leaving."""
 
-    def __init__(self, qemu, elf, folder, bus_port=None, held=False, plugin=None):
-        self.elf, self.socket, self.debug_port = elf, str(folder / "usart1"), free_port()
-        bus = f"socket,id=bus,host=127.0.0.1,port={bus_port},nodelay=on" if bus_port else "null,id=bus"
+    def __init__(self, qemu, elf, folder, bus_port=None, held=False):
+        self.socket, self.debug_port = str(folder / "usart1"), free_port()
         self.command = [
-            str(qemu), "-M", "olimex-stm32-h405", "-display", "none", "-monitor", "none", "-kernel", str(elf),
-            "-chardev", f"socket,id=line,path={self.socket},server=on,wait=off",
-            "-chardev", bus, "-serial", "chardev:line", *["-serial", "null"] * 4, "-serial", "chardev:bus",
-            "-gdb", f"tcp:127.0.0.1:{self.debug_port}", *(["-S"] if held else []),
-            *(["-plugin", plugin] if plugin else [])]
+            *board_command(qemu, elf, f"path={self.socket}", bus_port), "-gdb", f"tcp:127.0.0.1:{self.debug_port}",
+            *(["-S"] if held else [])]
         self.process = None
         self.said = None
 
@@ -86,12 +81,11 @@ class Board:
 
 
 class Debugger:
-    """GDB's remote protocol, as much of it as QEMU needs. The processor is halted while one is connected, but
-    between go_on and halt; close lets it run."""
+    """GDB's remote protocol, as much of it as QEMU needs. The processor is halted while one is connected;
+    close lets it run on."""
 
     def __init__(self, port):
         self.line = keep_trying(lambda: socket.create_connection(("127.0.0.1", port), timeout=5))
-        self.running = False
         self.ask("?")
 
     def send(self, text):
@@ -127,23 +121,11 @@ class Debugger:
             piece = data[at:at + 1024]
             self.good(f"M{address + at:x},{len(piece):x}:{piece.hex()}")
 
-    def word(self, address):
-        return int.from_bytes(self.read(address, 4), "little")
-
     def register(self, number):
         return int.from_bytes(bytes.fromhex(self.ask(f"p{number:x}"))[:4], "little")
 
     def set_register(self, number, value):
         self.good(f"P{number:x}={value.to_bytes(4, 'little').hex()}")
-
-    def go_on(self):
-        self.send("c")
-        self.running = True
-
-    def halt(self):
-        self.line.sendall(b"\x03")
-        self.running = False
-        return self.receive()
 
     def run_to(self, address, timeout_s=5.0):
         """Goes on until the instruction there is next."""
@@ -153,7 +135,5 @@ class Debugger:
         self.good(f"z1,{address:x},2")
 
     def close(self):
-        if self.running:
-            self.halt()
         self.ask("D")
         self.line.close()

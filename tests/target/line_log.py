@@ -8,8 +8,7 @@ import struct
 import threading
 import time
 
-HELLO, HEARTBEAT, LOG, ANGLES, POSE_LOG, BOOT_REPORT = 0x01, 0x06, 0x09, 0x11, 0x13, 0x46
-POSES, ARM, DISARM, ESTOP, ACK, NACK, FAULT = 0x10, 0x20, 0x21, 0x22, 0x40, 0x41, 0x45
+HEARTBEAT, ANGLES, POSE_LOG, FAULT, BOOT_REPORT = 0x06, 0x11, 0x13, 0x45, 0x46  # message types
 STATES = "BOOT SELFTEST DISARMED ARMING ACTIVE HOLD RELAX LIMP FAULT ESTOP".split()
 
 
@@ -31,17 +30,6 @@ def crc32c(data):
     return crc ^ 0xFFFFFFFF
 
 
-def cobs_encode(body):
-    out, block = bytearray(), bytearray()
-    for byte in body + b"\0":
-        if byte:
-            block.append(byte)
-        if not byte or len(block) == 254:
-            out += bytes([len(block) + 1]) + block
-            block.clear()
-    return bytes(out)
-
-
 def cobs_decode(data):
     out, at = bytearray(), 0
     while at < len(data):
@@ -51,11 +39,6 @@ def cobs_decode(data):
         if code < 255 and at < len(data):
             out.append(0)
     return bytes(out)
-
-
-def encode(kind, session, seq, t_us, payload):
-    body = struct.pack("<BBHI", kind, session, seq, t_us & 0xFFFFFFFF) + payload
-    return b"\0" + cobs_encode(body + struct.pack("<I", crc32c(body))) + b"\0"
 
 
 class Frames:

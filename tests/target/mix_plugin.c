@@ -6,7 +6,8 @@
  * QEMU ends, writes "region", then a line "address runs jumps" for each instruction, and starts at 0. Without
  * begin it counts always. One processor, code in the STM32F405's flash.
  *
- * QEMU's header for plugins is not packaged with it, so what is used of its API (version 2) is declared here.
+ * QEMU's header for plugins is not packaged with it, so what is used of its API is declared here: the same in its
+ * versions 1 (QEMU before 9) and 2 to 6.
  */
 #include <inttypes.h>
 #include <stdbool.h>
@@ -15,6 +16,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifndef QEMU_PLUGIN_API
+#define QEMU_PLUGIN_API 2
+#endif
 
 typedef uint64_t plugin_id;
 struct qemu_plugin_tb;
@@ -34,7 +39,7 @@ void qemu_plugin_register_vcpu_insn_exec_cb(struct qemu_plugin_insn *instruction
                                             void *context);
 
 extern int qemu_plugin_version;
-int qemu_plugin_version = 2;
+int qemu_plugin_version = QEMU_PLUGIN_API;
 int qemu_plugin_install(plugin_id id, const struct qemu_info *info, int words_n, char **words);
 
 enum { FLASH_START = 0x08000000, FLASH_BYTES = 0x100000 };

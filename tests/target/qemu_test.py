@@ -16,8 +16,8 @@ class Qemu(unittest.TestCase):
     def start(self, *words):
         """(process, port)"""
         c = firmware_case.choices
-        process = subprocess.Popen([sys.executable, "-B", TOOL, "--qemu", c.qemu, "--elf", c.elf, "--sim", c.sim, "--limber",
-                                    c.limber, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        command = [sys.executable, "-B", TOOL, "--qemu", c.qemu, "--elf", c.elf, "--sim", c.sim, "--limber", c.limber]
+        process = subprocess.Popen([*command, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.terminate)
@@ -32,8 +32,8 @@ class Qemu(unittest.TestCase):
 
     def test_with_servos(self):
         process, port = self.start("--links", "12", "--servos")
-        told = subprocess.run([firmware_case.choices.limber, "info", "--port", port], capture_output=True, text=True, timeout=30,
-                              check=False)
+        told = subprocess.run([firmware_case.choices.limber, "info", "--port", port], capture_output=True, text=True,
+                              timeout=30, check=False)
         self.assertEqual(told.returncode, 0, told.stderr)
         self.assertIn("12", told.stdout)
         children = self.children(process)
@@ -43,7 +43,8 @@ class Qemu(unittest.TestCase):
         self.assertEqual([pid for pid in children if pathlib.Path(f"/proc/{pid}").exists()], [])
 
     def test_an_image_that_is_not_there(self):
-        done = subprocess.run([sys.executable, "-B", TOOL, "--elf", "nowhere.elf"], capture_output=True, text=True, check=False)
+        done = subprocess.run([sys.executable, "-B", TOOL, "--elf", "nowhere.elf"], capture_output=True, text=True,
+                              check=False)
         self.assertEqual(done.returncode, 1)
         self.assertIn("tools/dev firmware", done.stderr)
 

@@ -20,9 +20,9 @@ SETTINGS = [f"links={SERVOS_N // 2}", "spring=2000", "smoothing=50", "servo_kind
 class Servos(FirmwareCase):
     def start(self, *script):
         """Servos, to which `script` happens, and a board with the rod they need."""
-        bus = subprocess.Popen([firmware_case.choices.sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(SERVOS_N), "--baud",
-                                str(WIRE_BAUD), *(word for fault in script for word in ("--inject", fault))],
-                               stdout=subprocess.PIPE, text=True)
+        command = [firmware_case.choices.sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(SERVOS_N), "--baud",
+                   str(WIRE_BAUD), *(word for fault in script for word in ("--inject", fault))]
+        bus = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         self.addCleanup(bus.stdout.close)
         self.addCleanup(bus.wait)
         self.addCleanup(bus.kill)

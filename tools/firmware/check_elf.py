@@ -18,8 +18,8 @@ FORBIDDEN = [  # a symbol's whole name, why
     (r"(__ieee754_|__kernel_)\w+|(a?(sin|cos|tan)h?|atan2|sqrt|cbrt|exp|exp2|expm1|log|log2|log10|log1p|pow|fmod|hypot"
      r"|floor|ceil|round|trunc|rint|lrint|lround|fabs|fma|ldexp|frexp|scalbn|copysign|nextafter)f?", "libm"),
     (r"_?(malloc|calloc|realloc|free|memalign)(_r)?|_?sbrk(_r)?|__malloc_\w+", "a heap"),
-    (r"_?v?(as|d|f|s|sn)?i?(printf|scanf)(_r)?|_?(puts|putchar|fputs|fputc|putc|fopen|fwrite|fread|fflush|_sfvwrite)(_r)?"
-     r"|__sinit|__sfp", "stdio"),
+    (r"_?v?(as|d|f|s|sn)?i?(printf|scanf)(_r)?|_?(puts|putchar|fputs|fputc|putc|fopen|fwrite|fread|fflush)(_r)?"
+     r"|__sfvwrite_r|__sinit|__sfp", "stdio"),
 ]
 DOUBLE = re.compile(r"\.f64\b")  # the FPU has none: ARMv7E-M with FPv4-SP
 

@@ -28,9 +28,9 @@ OPENOCD_PROBES = {  # JTAG adapters of the board's maker: what OpenOCD calls the
     "15ba:0003": "ftdi/olimex-arm-usb-ocd", "15ba:002b": "ftdi/olimex-arm-usb-ocd-h",
     "15ba:0004": "ftdi/olimex-jtag-tiny", "15ba:002a": "ftdi/olimex-arm-usb-tiny-h"}
 
-BOOT_LOADER = """to reach the boot loader in ROM (AN2606, STM32F405): power off, BOOT0 to 3.3 V, BOOT1 (PB2) to ground, power on.
-  Over USB (PA11, PA12) it then shows up as 0483:df11; over a serial line it listens on PA9 (TX) and PA10 (RX).
-  Afterwards: BOOT0 back to ground, reset."""
+BOOT_LOADER = """to reach the boot loader in ROM (AN2606, STM32F405): power off, BOOT0 to 3.3 V, BOOT1 (PB2) to ground,
+  power on. Over USB (PA11, PA12) it then shows up as 0483:df11; over a serial line it listens on PA9 (TX) and
+  PA10 (RX). Afterwards: BOOT0 back to ground, reset."""
 
 
 def connected():
@@ -79,7 +79,7 @@ TOOLS = {"st-flash": st_flash, "openocd": openocd, "dfu-util": dfu_util, "stm32f
 def ways(port):
     """(tool, its detail, what is connected) in order of preference, installed or not."""
     if port:
-        return [("stm32flash", port, port)]
+        return [("stm32flash", port, f"a serial port, {port}")]
     ids, found = connected(), []
     if any(ST_LINK.fullmatch(i) for i in ids):
         found += [("st-flash", None, "an ST-Link"), ("openocd", "stlink", "an ST-Link")]
@@ -128,7 +128,7 @@ def main(words=None):
         return give_up(f"no {image}: tools/dev firmware makes it")
     if image.stat().st_size > sum(SECTORS_BYTES):
         return give_up(f"{image} reaches into the sectors of the settings")
-    way = choose(choices.tool, choices.port)
+    way = choose(choices.tool or ("stm32flash" if choices.port else None), choices.port)
     if isinstance(way, list):
         return give_up(*way)
     name, detail = way

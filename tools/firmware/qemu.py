@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Boots the firmware's image on an emulated board (QEMU, olimex-stm32-h405) and says where to stream to. Ends with Ctrl-C.
+"""Boots the firmware's image on an emulated board (QEMU, olimex-stm32-h405) and says where to stream to.
+Ends with Ctrl-C.
 
     tools/dev qemu                        # then, elsewhere: limber stream --port tcp:127.0.0.1:PORT track.txt
     tools/dev qemu --links 50 --servos    # with a model of a hundred smart servos on its bus
 
-It keeps to real time as far as this machine lets it; each byte on a line costs it about 10 us, so some 50 KB a second are
-all it can carry. Settings are not kept: the emulator has no flash to write. A client that stays connected and
-stops reading stops the whole board until it reads again.
+It keeps to real time as far as this machine lets it; each byte on a line costs it about 10 us, so some 50 KB a
+second are all it can carry. Settings are not kept: the emulator has no flash to write. A client that stays
+connected and stops reading stops the whole board until it reads again.
 """
 import argparse
 import pathlib
@@ -41,12 +42,12 @@ def start_servos(sim, servos_n):
     return process, told and int(told[1])
 
 
-def start_board(qemu, image, port, bus_port):
+def board_command(qemu, image, line, bus_port=None):
+    """USART1 listens at `line`, part of QEMU's -chardev socket; USART6 is connected to 127.0.0.1:bus_port, if any."""
     bus = f"socket,id=bus,host=127.0.0.1,port={bus_port},nodelay=on" if bus_port else "null,id=bus"
-    return subprocess.Popen([
-        qemu, "-M", "olimex-stm32-h405", "-display", "none", "-monitor", "none", "-kernel", str(image),
-        "-chardev", f"socket,id=line,host=127.0.0.1,port={port},server=on,wait=off,nodelay=on", "-chardev", bus,
-        "-serial", "chardev:line", *["-serial", "null"] * 4, "-serial", "chardev:bus"], stdin=subprocess.DEVNULL)
+    return [str(qemu), "-M", "olimex-stm32-h405", "-display", "none", "-monitor", "none", "-kernel", str(image),
+            "-chardev", f"socket,id=line,{line},server=on,wait=off", "-chardev", bus,
+            "-serial", "chardev:line", *["-serial", "null"] * 4, "-serial", "chardev:bus"]
 
 
 def set_up(limber, port, choices):
@@ -70,7 +71,8 @@ def serve(choices, children):
         children.append(servos)
         if not bus_port:
             return give_up("limber-sim servos did not start")
-    board = start_board(choices.qemu, choices.elf, port, bus_port)
+    line = f"host=127.0.0.1,port={port},nodelay=on"
+    board = subprocess.Popen(board_command(choices.qemu, choices.elf, line, bus_port), stdin=subprocess.DEVNULL)
     children.append(board)
     if not set_up(choices.limber, port, choices):
         return 1

@@ -52,7 +52,8 @@ def check_stack(graph, image):
     if worst > most:
         faults.append(f"stack: {worst:,} bytes at worst, and there are {most:,}")
     if largest[0][0] > guard:
-        faults.append(f"stack: the frame of {largest[0][1]}, {largest[0][0]:,} bytes, can step over the guard's {guard:,}")
+        bytes_n, name = largest[0]
+        faults.append(f"stack: the frame of {name}, {bytes_n:,} bytes, can step over the guard's {guard:,}")
     for name, (bottom, top) in OWN_STACK.items():
         bytes_n, most = graph.entry(name)[0], symbols[top] - symbols[bottom]
         print(f"           {name}, on a stack of its own: {bytes_n:,} of {most:,}")

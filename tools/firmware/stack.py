@@ -9,8 +9,9 @@ import re
 
 import elf
 
-# Calls through pointers: the source text that makes the call; where the pointers are set, and what that looks like (group
-# 1 is the function's name; {member} stands for what the call's own group 1 has matched). The call may reach each of these.
+# Calls through pointers: the source text that makes the call; where the pointers are set, and what that looks like
+# (group 1 is the function's name; {member} stands for what the call's own group 1 has matched). The call may reach
+# each of these.
 ALWAYS, EVENTUALLY, NEVER = range(3)  # somebody sets one; perhaps nobody; nobody on the board, without looking
 BOARD, SERVOS = "firmware/boards/stm32f405", "firmware/servos"
 MEMBER = r"\.{member}\s*=\s*&?(\w+)"
@@ -88,8 +89,8 @@ class Graph:
         for pattern, how, sources, finder in INDIRECT:
             if call := re.match(r"[^(;]*?" + pattern, text):
                 return [] if how == NEVER else self.set_to(how, sources, finder.format(member=call[1]))
-        raise Unknown(f"{base_name(caller)} calls through a pointer at {place or 'an unknown place'}, which INDIRECT in "
-                      f"tools/firmware/stack.py does not cover: {text[:60]}")
+        raise Unknown(f"{base_name(caller)} calls through a pointer at {place or 'an unknown place'}, which INDIRECT "
+                      f"in tools/firmware/stack.py does not cover: {text[:60]}")
 
     def set_to(self, how, sources, finder):
         text = "".join(path.read_text(encoding="utf-8") for path in sorted((self.root / sources).rglob("*.c")))

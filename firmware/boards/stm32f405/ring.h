@@ -3,7 +3,7 @@
  * One end only writes `in`, the other only `out`; both count on for ever, so that full and empty differ.
  * There is one core, and an interrupt sees its stores in program order: it is only the compiler that
  * must not move a byte past the count which hands it over. Hence volatile counts and signal fences, and no
- * masking of interrupts. Sizes are powers of two; no function waits, each costs a few cycles a byte.
+ * masking of interrupts. Sizes are powers of two; no function waits.
  */
 #ifndef LIMBER_RING_H
 #define LIMBER_RING_H
@@ -64,6 +64,32 @@ static inline size_t ring_take(ring *r, uint8_t *bytes, size_t room)
     atomic_signal_fence(memory_order_release);
     r->out = out + (uint32_t)n;
     return n;
+}
+
+/* One byte, for interrupts. False: no room, or nothing there. */
+static inline bool ring_put_byte(ring *r, uint8_t byte)
+{
+    const uint32_t in = r->in;
+    if (in - r->out == r->size) {
+        return false;
+    }
+    r->bytes[in & (r->size - 1)] = byte;
+    atomic_signal_fence(memory_order_release);
+    r->in = in + 1;
+    return true;
+}
+
+static inline bool ring_take_byte(ring *r, uint8_t *byte)
+{
+    const uint32_t out = r->out;
+    if (out == r->in) {
+        return false;
+    }
+    atomic_signal_fence(memory_order_acquire);
+    *byte = r->bytes[out & (r->size - 1)];
+    atomic_signal_fence(memory_order_release);
+    r->out = out + 1;
+    return true;
 }
 
 /* By the taking end. */

@@ -111,7 +111,7 @@ static void receive(uart *u, uint32_t status)
     }
     if ((status & USART_SR_FE) != 0) {
         u->framing_errors++;
-    } else if (!ring_put(&u->rx, &byte, 1)) {
+    } else if (!ring_put_byte(&u->rx, byte)) {
         u->overruns++;
     }
 }
@@ -121,7 +121,7 @@ static void send(uart *u)
 {
     usart_registers *r = u->registers;
     uint8_t byte;
-    if (ring_take(&u->tx, &byte, 1) == 1) {
+    if (ring_take_byte(&u->tx, &byte)) {
         reg_write(&r->dr, byte);
     } else {
         reg_change(&r->cr1, USART_CR1_TXEIE, u->half_duplex ? USART_CR1_TCIE : 0u);
