@@ -4,7 +4,7 @@
  *     uart_start(&u, 1000000);
  *     its interrupt handler: uart_interrupt(&u);
  *
- * RM0090 section 30. An interrupt for each byte, under 100 cycles: at 4 Mbaud there are 420 of them between two
+ * RM0090 section 30. An interrupt for each byte, under 120 cycles (COST.md): at 4 Mbaud there are 420 of them between two
  * bytes, so this is the highest of the priorities. No DMA and no idle-line detection: QEMU has neither, and the
  * image tested there is the image that is flashed.
  *
