@@ -19,7 +19,8 @@ import sys
 import time
 
 BUILD = pathlib.Path(__file__).resolve().parents[2] / "build"
-SERVO_BAUD = 115200  # the board then waits long enough for answers that come through two processes
+SERVO_BAUD = 4000000
+GOALS_HZ = 25  # so that a hundred servos' fit what the line can carry
 SERVOS_MAX = 128
 
 
@@ -36,7 +37,7 @@ def give_up(text):
 
 def start_servos(sim, servos_n):
     """(process, its port)"""
-    process = subprocess.Popen([sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(servos_n), "--baud", "4000000"],
+    process = subprocess.Popen([sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(servos_n), "--baud", str(SERVO_BAUD)],
                                stdout=subprocess.PIPE, text=True)
     told = re.search(r"127\.0\.0\.1:(\d+)", process.stdout.readline())
     return process, told and int(told[1])
@@ -54,7 +55,7 @@ def set_up(limber, port, choices):
     """What --links and --servos ask for, told as a user would. False where the board does not take it."""
     settings = [f"links={choices.links}"] if choices.links else []
     if choices.servos:
-        settings += ["servo_kind=2", f"servo_baud={SERVO_BAUD}"]
+        settings += ["servo_kind=2", f"servo_baud={SERVO_BAUD}", f"servo_rate={GOALS_HZ}"]
     if not settings:
         return True
     time.sleep(0.5)  # it starts
