@@ -30,6 +30,9 @@ demo|libinih-dev|pkg-config inih|reads settings files
 demo|libcjson-dev|pkg-config libcjson|reads and writes JSON
 demo|libjs-chart.js|test -e /usr/share/javascript/chart.js|draws the charts of reports
 host|libserialport-dev|pkg-config libserialport|serial ports of the PC tool
+host|liblo-dev|pkg-config liblo|speaks OSC with trackers and graphics
+host|liblo-tools|command -v oscsend|checks that against others' OSC
+host|libncurses-dev|pkg-config ncursesw|live view of the PC tool
 host|python3|command -v python3|runs the test oracles
 host|python3-numpy|python3 -c 'import numpy'|runs the test oracles
 target|gcc-arm-none-eabi|command -v arm-none-eabi-gcc|compiles the firmware

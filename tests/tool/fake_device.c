@@ -51,9 +51,10 @@ static void say_hello(fake_device *d, uint16_t request_id)
 {
     message hello = {.type = MESSAGE_HELLO,
                      .hello = {request_id, PROTOCOL_MAJOR, PROTOCOL_MINOR, messages_layout_hash(),
-                               FEATURE_SIMULATED | FEATURE_SETTINGS, 64, FAKE_JOINTS_N, 8000.0f,
-                               (float)d->ways.tick_hz, (float)d->ways.angles_hz, 0.0f, 0, "fake",
-                               "0.0 test"}};
+                               FEATURE_SIMULATED | FEATURE_SETTINGS, 64,
+                               (uint16_t)(d->ways.swing > 0 ? d->ways.swing : FAKE_JOINTS_N),
+                               8000.0f, (float)d->ways.tick_hz, (float)d->ways.angles_hz, 0.0f, 0,
+                               "fake", "0.0 test"}};
     if (d->ways.major > 0) {
         hello.hello.protocol_major = (uint8_t)d->ways.major;
     }
@@ -217,6 +218,9 @@ static void send_angles(fake_device *d, uint32_t now_us)
     m.angles.solved_ago_us = (uint16_t)(m.angles.received_ago_us / 4);
     m.angles.angles_tenth_mrad[0][0] = (int16_t)(d->tick % 1000);
     m.angles.angles_tenth_mrad[2][1] = MESSAGES_ANGLE_INVALID;
+    if (d->ways.swing > 0) {
+        fake_swing_angles(d, &m.angles);
+    }
     fake_send(d, &m);
 }
 
@@ -235,6 +239,9 @@ void fake_run(fake_device *d)
         const uint32_t now_us = fake_now_us();
         d->tick =
             (uint32_t)((uint64_t)(now_us - d->start_us) * (uint64_t)d->ways.tick_hz / 1000000);
+        if (d->ways.swing > 0) {
+            fake_swing(d, now_us);
+        }
         step_state(d, now_us);
         if (now_us - beat_us >= 100000) {
             beat_us = now_us;

@@ -18,6 +18,7 @@ typedef struct {
     int major, state, tick_hz, angles_hz, nack_type, nack_reason;
     int drop_requests;            /* ignores each request so many times */
     int drop_poses, reject_poses; /* every so-many-th */
+    int swing;                    /* joints that move as if poses came: fake_swing.c */
     int lie;                      /* counts so many fewer accepted poses in the end */
     int silent_after, close_after, fall_after, fall_to; /* poses; the state then */
     int reopen_ms;
@@ -52,5 +53,10 @@ void fake_run(fake_device *d);
 /* fake_requests.c: everything with a request id but HELLO. */
 void fake_requests_init(fake_device *d);
 void fake_request(fake_device *d, const message *m);
+void fake_tell_stats(fake_device *d, uint16_t request_id); /* 0: unasked */
+
+/* fake_swing.c: a device that somebody moves, to be watched. To be called often. */
+void fake_swing(fake_device *d, uint32_t now_us);
+void fake_swing_angles(const fake_device *d, message_angles *angles);
 
 #endif

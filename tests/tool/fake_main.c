@@ -27,6 +27,7 @@ int main(int argc, char **argv)
                                        NUMBER("reason", nack_reason),
                                        NUMBER("drop-requests", drop_requests),
                                        NUMBER("drop-poses", drop_poses),
+                                       NUMBER("swing", swing),
                                        NUMBER("reject-poses", reject_poses),
                                        NUMBER("lie", lie),
                                        NUMBER("silent-after", silent_after),

@@ -202,10 +202,10 @@ static void list_preset(fake_device *d, const message *m)
     fake_send(d, &answer);
 }
 
-static void tell_stats(fake_device *d, const message *m)
+void fake_tell_stats(fake_device *d, uint16_t request_id)
 {
     message answer = {.type = MESSAGE_STATS, .stats = d->stats};
-    answer.stats.request_id = m->stats_get.request_id;
+    answer.stats.request_id = request_id;
     answer.stats.uptime_ms = (fake_now_us() - d->start_us) / 1000;
     answer.stats.poses_accepted -= d->poses_n > 0 ? (uint32_t)d->ways.lie : 0;
     fake_send(d, &answer);
@@ -235,7 +235,7 @@ void fake_request(fake_device *d, const message *m)
     }
     switch (m->type) {
     case MESSAGE_STATS_GET:
-        tell_stats(d, m);
+        fake_tell_stats(d, m->stats_get.request_id);
         break;
     case MESSAGE_ARM:
         arm(d, m);

@@ -92,6 +92,103 @@ double delays_quantile_ms(const delays *d, double share)
     return 0.0;
 }
 
+/* --- spread ---------------------------------------------------------------------------------------- */
+
+enum { USUAL_BARS_MAX = 20, PRINTED_WIDTH = 50 };
+
+/* The least width of 5, 10, 20, 50, 100, ... us, in the finest bins, that takes no more bars than there are. */
+static int bar_width(int first_bin, int last_bin)
+{
+    static const int STEPS[] = {1, 2, 4};
+    for (int decade = 1;; decade *= 10) {
+        for (int i = 0; i < 3; i++) {
+            const int width = STEPS[i] * decade;
+            if (last_bin / width - first_bin / width < USUAL_BARS_MAX) {
+                return width;
+            }
+        }
+    }
+}
+
+static double ms_of(int bin)
+{
+    return bin * DELAYS_BIN_US / 1e3;
+}
+
+/* The bin up to which a share of the delays lies. */
+static int bin_of_share(const delays *d, double share)
+{
+    int bin = 0;
+    for (uint64_t so_far = d->bins[0]; (double)so_far < share * (double)d->n;) {
+        so_far += d->bins[++bin];
+    }
+    return bin;
+}
+
+int delays_bars(const delays *d, delays_bar bars[DELAYS_BARS_MAX])
+{
+    int first = 0;
+    if (d->n == 0) {
+        return 0;
+    }
+    while (d->bins[first] == 0) {
+        first++;
+    }
+    const int usual = bin_of_share(d, 0.99), longest = bin_of_share(d, 1.0);
+    const int width = bar_width(first, usual), begin = first / width;
+    const bool all_fit = longest / width - begin < DELAYS_BARS_MAX;
+    const int end = (all_fit ? longest : usual) / width + 1; /* of those equally wide */
+    for (int i = begin; i < end; i++) {
+        bars[i - begin] = (delays_bar){ms_of(i * width), ms_of((i + 1) * width), 0};
+    }
+    const int bars_n = end - begin + !all_fit;
+    delays_bar *const last = &bars[bars_n - 1];
+    if (!all_fit) {
+        *last = (delays_bar){ms_of(end * width), 0.0, 0};
+    }
+    for (int bin = first; bin <= longest; bin++) {
+        (bin < end * width ? &bars[bin / width - begin] : last)->n += d->bins[bin];
+    }
+    if (!all_fit || longest == DELAYS_BINS_N - 1) {
+        last->to_ms = (double)d->max_us * 1e-3; /* the last of the bins has all that is longer */
+    }
+    return bars_n;
+}
+
+void delays_print_bars(const delays *d, FILE *out)
+{
+    delays_bar bars[DELAYS_BARS_MAX];
+    const int bars_n = delays_bars(d, bars);
+    uint64_t most = 1;
+    for (int i = 0; i < bars_n; i++) {
+        most = bars[i].n > most ? bars[i].n : most;
+    }
+    for (int i = 0; i < bars_n; i++) {
+        /* rounded up: one delay shows, too */
+        const int length = (int)((bars[i].n * PRINTED_WIDTH + most - 1) / most);
+        fprintf(out, "  %8.3f ... %8.3f %8llu%s%.*s\n", bars[i].from_ms, bars[i].to_ms,
+                (unsigned long long)bars[i].n, length > 0 ? " " : "", length,
+                "##################################################");
+    }
+}
+
+cJSON *delays_bars_json(const delays *d)
+{
+    delays_bar bars[DELAYS_BARS_MAX];
+    const int bars_n = delays_bars(d, bars);
+    cJSON *const json = cJSON_CreateArray();
+    for (int i = 0; i < bars_n; i++) {
+        cJSON *const one = cJSON_CreateObject();
+        cJSON_AddNumberToObject(one, "from_ms", bars[i].from_ms);
+        cJSON_AddNumberToObject(one, "to_ms", bars[i].to_ms);
+        cJSON_AddNumberToObject(one, "poses", (double)bars[i].n);
+        cJSON_AddItemToArray(json, one);
+    }
+    return json;
+}
+
+/* --- all parts ------------------------------------------------------------------------------------- */
+
 static const struct {
     const char *name, *what;
     size_t offset;

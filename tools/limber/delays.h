@@ -58,4 +58,17 @@ cJSON *pose_delays_json(const pose_delays *d);
 /* The delay that a share of them does not exceed, ms; 0 where there are none. */
 double delays_quantile_ms(const delays *d, double share);
 
+/* How they are spread: bars next to each other, from the shortest delay to the longest, every delay in one of
+ * them. All are equally wide (5, 10, 20, 50, 100, ... us), but for the last where a few delays (at most 1 %)
+ * are so long that they would leave the others no room: that one reaches to the longest. */
+enum { DELAYS_BARS_MAX = 25 };
+typedef struct {
+    double from_ms, to_ms;
+    uint64_t n;
+} delays_bar;
+/* Returns how many bars there are; 0 without delays. */
+int delays_bars(const delays *d, delays_bar bars[DELAYS_BARS_MAX]);
+void delays_print_bars(const delays *d, FILE *out);
+cJSON *delays_bars_json(const delays *d);
+
 #endif

@@ -8,16 +8,20 @@
 #include "progress.h"
 #include "texts.h"
 
-enum { OPTION_SECONDS = 1, OPTION_RATE };
+enum { OPTION_SECONDS = 1, OPTION_RATE, OPTION_HISTOGRAM };
 
 static const char EXAMPLES[] =
     "  limber latency\n"
     "  limber latency --seconds 30 --rate 500 --port serial:/dev/ttyUSB0\n"
+    "  limber latency --histogram\n"
     "  limber latency --json | jq .latency.whole.p99_ms\n\n"
     "Sends a pose that does not move and waits for the angles it led to: the whole way and its "
     "three parts. The reply\n"
     "waits for the turn of ANGLES, which come at angles_rate (limber params). Servos and tracker "
-    "come on top.\n";
+    "come on top.\n"
+    "--histogram: how many poses took how long, in bars of equal width; where a few took very "
+    "long, at most one in a\n"
+    "hundred, the last bar has them all. With --json: latency.histogram.\n";
 
 typedef struct {
     pose_delays *delays;
@@ -87,7 +91,7 @@ static int measure(session *s, listening *l, double seconds, double rate_hz)
                                           "tells what became of the poses");
 }
 
-static void print(const session *s, const pose_delays *d, bool json)
+static void print(const session *s, const pose_delays *d, bool json, bool histogram)
 {
     const int error_us = clock_sync_error_us(&s->clock, limber_now_us());
     if (json) {
@@ -96,11 +100,19 @@ static void print(const session *s, const pose_delays *d, bool json)
         cJSON_AddStringToObject(all, "device", s->device.device);
         cJSON_AddNumberToObject(all, "sent", (double)d->sent_n);
         cJSON_AddNumberToObject(all, "clock_error_us", error_us);
-        cJSON_AddItemToObject(all, "latency", pose_delays_json(d));
+        cJSON *const latency = pose_delays_json(d);
+        if (histogram) {
+            cJSON_AddItemToObject(latency, "histogram", delays_bars_json(&d->whole));
+        }
+        cJSON_AddItemToObject(all, "latency", latency);
         texts_print_json(all);
         return;
     }
     pose_delays_print(d, stdout);
+    if (histogram) {
+        printf("histogram  of pose -> angles, ms, and how many poses\n");
+        delays_print_bars(&d->whole, stdout);
+    }
     printf(
         "clocks     known to within %d us: so far line and reply may be off against each other\n",
         error_us);
@@ -112,6 +124,7 @@ static void print(const session *s, const pose_delays *d, bool json)
 static int run(poptContext context, link_options *link, session *s)
 {
     double seconds = 5.0, rate_hz = 200.0;
+    bool histogram = false;
     int result = SIM_OK;
     for (int option;
          result == SIM_OK && (option = options_next(context, "latency", EXAMPLES)) != 0;) {
@@ -120,6 +133,10 @@ static int run(poptContext context, link_options *link, session *s)
         }
         if (option < 0) {
             return SIM_BAD_INPUT;
+        }
+        if (option == OPTION_HISTOGRAM) {
+            histogram = true;
+            continue;
         }
         char *const text = poptGetOptArg(context);
         result = option == OPTION_SECONDS ? link_number("--seconds", text, 0.1, 1e5, &seconds)
@@ -145,7 +162,7 @@ static int run(poptContext context, link_options *link, session *s)
     listening l = {d, &s->clock};
     result = d == NULL ? SIM_INTERNAL : measure(s, &l, seconds, rate_hz);
     if (result == SIM_OK) {
-        print(s, d, link->json != 0);
+        print(s, d, link->json != 0, histogram);
     }
     free(d);
     return result;
@@ -158,6 +175,7 @@ int limber_latency_command(int argc, const char **argv)
         LINK_PORT_OPTION(&link),
         LINK_JSON_OPTION(&link),
         {"seconds", 0, POPT_ARG_STRING, NULL, OPTION_SECONDS, "for so long (5)", "S"},
+        {"histogram", 0, POPT_ARG_NONE, NULL, OPTION_HISTOGRAM, "and how they are spread", NULL},
         {"rate", 'r', POPT_ARG_STRING, NULL, OPTION_RATE, "poses a second (200)", "HZ"},
         OPTIONS_END};
     session s = {0};

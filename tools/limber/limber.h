@@ -38,5 +38,6 @@ int limber_clear_command(int argc, const char **argv);
 int limber_servo_command(int argc, const char **argv);
 int limber_record_command(int argc, const char **argv);
 int limber_latency_command(int argc, const char **argv);
+int limber_monitor_command(int argc, const char **argv);
 
 #endif

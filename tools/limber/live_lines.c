@@ -1,6 +1,6 @@
-/* live_lines.c - see live_lines.h. */
-#include "live_lines.h"
-
+/* live_lines.c - TUM lines from standard input, as they come: `timestamp tx ty tz qx qy qz qw`, s and m.
+ *
+ * Comments and blank lines are passed over. Of the lines that are no pose the first one is complained of. */
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,18 +8,39 @@
 #include <unistd.h>
 
 #include "limber.h"
+#include "live_source.h"
 
-void live_lines_read(live_lines *l)
+typedef struct {
+    char text[65536];
+    size_t text_n;
+    bool too_long;
+    long line;
+} live_lines;
+
+static int open_lines(live_source *s, const char *where)
 {
+    (void)where;
+    s->fd = STDIN_FILENO;
+    s->state = calloc(1, sizeof(live_lines));
+    return s->state == NULL ? sim_give_up("out of memory") : SIM_OK;
+}
+
+static void read_lines(live_source *s, bool readable)
+{
+    live_lines *const l = s->state;
+    if (!readable) {
+        return;
+    }
     if (l->text_n == sizeof l->text) { /* no line is that long: not poses */
         l->text_n = 0;
         l->too_long = true;
     }
-    const long n = read(l->fd, l->text + l->text_n, sizeof l->text - l->text_n);
+    const long n = read(s->fd, l->text + l->text_n, sizeof l->text - l->text_n);
+    s->arrived_us = limber_now_us();
     if (n > 0) {
         l->text_n += (size_t)n;
     } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
-        l->ended = true;
+        s->ended = true;
         if (l->text_n > 0 && l->text_n < sizeof l->text && l->text[l->text_n - 1] != '\n') {
             l->text[l->text_n++] = '\n'; /* the last line may lack its end */
         }
@@ -45,8 +66,10 @@ static bool parse(const live_lines *l, char *text, track_sample *sample)
     return rest[strspn(rest, " \t\r")] == '\0';
 }
 
-bool live_lines_next(live_lines *l, track_sample *sample)
+/* The next complete line that is a pose. */
+static bool next_line(live_source *s, track_sample *sample)
 {
+    live_lines *const l = s->state;
     for (char *end; (end = memchr(l->text, '\n', l->text_n)) != NULL;) {
         char text[512];
         const size_t length = (size_t)(end - l->text);
@@ -65,7 +88,7 @@ bool live_lines_next(live_lines *l, track_sample *sample)
         if (!cut && parse(l, text, sample)) {
             return true;
         }
-        if (l->unreadable++ == 0) {
+        if (s->counts.unreadable++ == 0) {
             limber_note("standard input:%ld: not 'timestamp tx ty tz qx qy qz qw': '%.60s'; left "
                         "out, as all like it",
                         l->line, text);
@@ -73,3 +96,16 @@ bool live_lines_next(live_lines *l, track_sample *sample)
     }
     return false;
 }
+
+/* Standard input is nobody's to close. */
+static void close_lines(live_source *s)
+{
+    (void)s;
+}
+
+const live_kind live_lines_kind = {"",
+                                   .waits = true,
+                                   .open = open_lines,
+                                   .read = read_lines,
+                                   .next = next_line,
+                                   .close = close_lines};

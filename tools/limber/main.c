@@ -14,7 +14,7 @@ static const struct {
 } COMMANDS[] = {
     {"ports", limber_ports_command, "list the serial ports, and which one a board may hang on"},
     {"info", limber_info_command, "who is there: build, state, limits, counters"},
-    {"stream", limber_stream_command, "let the rod follow a recorded track, or lines on stdin"},
+    {"stream", limber_stream_command, "let the rod follow a track, or a live tracker: VRPN, OSC, stdin"},
     {"params", limber_params_command, "list, get, set, save, load, defaults"},
     {"preset", limber_preset_command, "make it a foil, a whip, ...; also while it moves"},
     {"arm", limber_arm_command, "give the servos torque"},
@@ -23,6 +23,7 @@ static const struct {
     {"clear", limber_clear_command, "leave FAULT or ESTOP for DISARMED"},
     {"servo", limber_servo_command, "find and set up servos, one by one: scan, id, baud, test"},
     {"record", limber_record_command, "write the angles that the device sends as CSV"},
+    {"monitor", limber_monitor_command, "watch it live: state, rates, limits, angles as bars"},
     {"latency", limber_latency_command, "measure pose -> angles, split into line, solve and reply"},
 };
 enum { COMMANDS_N = sizeof COMMANDS / sizeof COMMANDS[0] };

@@ -12,7 +12,9 @@ enum { OPTION_SECONDS = 1, IDLE_US = 100000 };
 static const char EXAMPLES[] =
     "  limber record angles.csv --seconds 10\n"
     "  limber record angles.csv              # until Ctrl-C\n"
-    "  limber stream hand.txt --angles angles.csv    # while streaming: one program to a port\n\n"
+    "  limber stream hand.txt --angles angles.csv    # while streaming: one program to a port\n"
+    "  limber stream hand.txt --poses run.txt        # the poses, as a track for limber-sim "
+    "replay\n\n"
     "The file is what limber-sim replay --angles writes: t,theta1,phi1,... in s and rad; here in "
     "steps of 0.1 mrad.\n";
 

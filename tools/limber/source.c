@@ -10,8 +10,8 @@ int source_open(source *s, const char *path, const source_options *options)
 {
     const bool is_stdin = strcmp(path, "-") == 0;
     *s = (source){.options = *options, .name = is_stdin ? "standard input" : path};
-    if (options->live) {
-        return SIM_OK; /* file descriptor 0 */
+    if (options->live != NULL) {
+        return live_source_open(&s->input, options->live, s->name);
     }
     const int result = track_read(is_stdin ? "/dev/stdin" : path, &options->track, &s->file);
     if (result != SIM_OK) {
@@ -23,7 +23,6 @@ int source_open(source *s, const char *path, const source_options *options)
     memcpy(s->file.origin_m, s->file.samples[0].position_m, sizeof s->file.origin_m);
     if (options->resample_hz > 0.0) {
         if (track_ticks_count(&s->file, options->resample_hz) > 1e9) {
-            source_free(s);
             return sim_complain("%s: %g Hz over its whole duration are too many poses", s->name,
                                 options->resample_hz);
         }
@@ -34,7 +33,9 @@ int source_open(source *s, const char *path, const source_options *options)
 
 void source_free(source *s)
 {
-    if (!s->options.live) {
+    if (s->options.live != NULL) {
+        live_source_close(&s->input);
+    } else {
         track_free(&s->file);
     }
 }
@@ -57,7 +58,7 @@ bool source_next(source *s, source_pose *pose)
         if (!track_ticks_next(&s->ticks, &tick)) {
             return false;
         }
-        *pose = (source_pose){tick.base, t_s};
+        *pose = (source_pose){.pose = tick.base, .t_s = t_s};
         return true;
     }
     if (s->next == s->file.samples_n) {
@@ -70,7 +71,8 @@ bool source_next(source *s, source_pose *pose)
 bool source_next_live(source *s, source_pose *pose)
 {
     track_sample sample;
-    while (live_lines_next(&s->lines, &sample)) {
+    uint64_t captured_us;
+    while (live_source_next(&s->input, &sample, &captured_us)) {
         s->counts.lines++;
         if (!track_take_sample(&sample, &s->options.track, &s->counts)) {
             continue;
@@ -81,8 +83,8 @@ bool source_next_live(source *s, source_pose *pose)
             s->first_s = sample.t_s;
             memcpy(s->origin_m, sample.position_m, sizeof s->origin_m);
         }
-        s->last_s = sample.t_s;
         *pose = pose_of(&sample, s->origin_m, s->first_s);
+        pose->captured_us = captured_us;
         return true;
     }
     return false;

@@ -1,23 +1,24 @@
-/* source.h - the poses to send: a track at its own times, the same resampled, or lines as they come. */
+/* source.h - the poses to send: a track at its own times, the same resampled, or a live source's as they come. */
 #ifndef LIMBER_SOURCE_H
 #define LIMBER_SOURCE_H
 
 #include <stdbool.h>
 
-#include "live_lines.h"
+#include "live_source.h"
 #include "mount.h"
 #include "track.h"
 
 typedef struct {
     track_options track;
     mount mount;
-    double resample_hz; /* 0: the track's own samples */
-    bool live;          /* lines from standard input, as they come */
+    double resample_hz;    /* 0: the track's own samples */
+    const live_kind *live; /* poses as they come; NULL: a track */
 } source_options;
 
 typedef struct {
     rod_pose pose; /* of the base, from where it was at first: so that float32 keeps its digits */
     double t_s;    /* after the first pose */
+    uint64_t captured_us; /* live: when, by limber_now_us */
 } source_pose;
 
 typedef struct {
@@ -26,20 +27,20 @@ typedef struct {
     track file; /* its samples are the base's, after the mount */
     track_ticks ticks;
     size_t next;
-    live_lines lines;
-    bool begun; /* a live line has given origin_m and first_s */
-    double origin_m[3], first_s, last_s;
-    track_counts counts; /* of live lines */
+    live_source input;
+    bool begun; /* a live pose has given origin_m and first_s */
+    double origin_m[3], first_s;
+    track_counts counts; /* of live poses */
 } source;
 
-/* SIM_OK, or an exit code after complaining. Free it with source_free. */
+/* SIM_OK, or an exit code after complaining. Free it with source_free in any case. */
 int source_open(source *s, const char *path, const source_options *options);
 void source_free(source *s);
 
 /* Tracks: the next pose, or false at the end. */
 bool source_next(source *s, source_pose *pose);
 
-/* Live: the next pose of a complete line. */
+/* Live: the next pose of what s->input has read. */
 bool source_next_live(source *s, source_pose *pose);
 
 /* Tracks: the usual time between poses (median), from first to last pose, and how many there are. */

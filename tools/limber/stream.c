@@ -12,6 +12,7 @@ enum {
     WINDOW_N = 16, /* poses on their way at most when nothing else sets the pace */
     PONG_MAX_US = 1000000,
     IDLE_US = 50000,
+    LIVE_IDLE_US = 20000,
 };
 
 void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us)
@@ -34,7 +35,7 @@ void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us)
                  .quaternion_xyzw = {q.x, q.y, q.z, q.w},
                  .age_us = (uint16_t)(age_us < UINT16_MAX ? age_us : UINT16_MAX),
                  .quality = UINT8_MAX,
-                 .source = st->source->options.live ? SOURCE_UNKNOWN : SOURCE_RECORDED}};
+                 .source = st->source->options.live != NULL ? SOURCE_UNKNOWN : SOURCE_RECORDED}};
     pose_delays_sent(st->delays, session_next_seq(&st->s, MESSAGE_POSE), now_us);
     (void)session_send_at(&st->s, &m, now_us);
     st->session_sent_n++;
@@ -53,6 +54,9 @@ static bool goes_on(stream *st, int *result)
         limber_note("lost the device: %s; trying again until it is back (Ctrl-C stops)", st->s.why);
         *result = stream_find_again(st);
         st->interrupted = interrupt_came();
+        if (st->source->options.live != NULL) {
+            st->skipped_n += (uint64_t)live_source_skip(&st->source->input);
+        }
     } else if (st->s.lost) {
         *result = limber_refuse("lost the device: %s (--reconnect would try again)", st->s.why);
     } else if (st->arming == ARMING_FAILED || stream_was_dropped(st)) {
@@ -138,21 +142,22 @@ static int play_track(stream *st)
 
 static int play_live(stream *st)
 {
-    live_lines *const lines = &st->source->lines;
+    live_source *const input = &st->source->input;
     int result = SIM_OK;
     if (st->options.arm) {
         stream_begin_arming(st);
     }
     st->play_us = limber_now_us();
-    while (!lines->ended && goes_on(st, &result)) {
+    while (!input->ended && goes_on(st, &result)) {
         source_pose pose;
-        if (session_step(&st->s, limber_now_us() + IDLE_US, lines->fd)) {
-            live_lines_read(lines);
-        }
+        live_source_read(input, session_step(&st->s, limber_now_us() + LIVE_IDLE_US, input->fd));
         while (!st->s.lost && source_next_live(st->source, &pose)) {
-            stream_send(st, &pose.pose, limber_now_us());
+            stream_send(st, &pose.pose, pose.captured_us);
             st->played_n++;
             st->played_s = pose.t_s;
+        }
+        if (live_source_is_silent(input)) {
+            st->arming_us = limber_now_us(); /* arming has the time it needs once poses come */
         }
     }
     return result;
@@ -163,7 +168,10 @@ static int play_live(stream *st)
 static int finish(stream *st, int result)
 {
     st->end_us = limber_now_us();
+    st->end_state = st->state;
     const int disarmed = stream_disarm(st);
+    pose_track_end(st->options.poses, st->in_session ? &st->s : NULL);
+    stream_end_graphics(st);
     result = result == SIM_OK ? disarmed : result;
     if (!st->in_session) {
         return result;
@@ -176,9 +184,10 @@ static int finish(stream *st, int result)
     return result == SIM_OK ? settled : result;
 }
 
-int stream_run(stream *st, const stream_options *options, source *src, angles_csv *csv)
+int stream_run(stream *st, const stream_options *options, source *src, angles_csv *csv,
+               graphics *drawn)
 {
-    *st = (stream){.options = *options, .source = src, .csv = csv};
+    *st = (stream){.options = *options, .source = src, .csv = csv, .graphics = drawn};
     st->delays = pose_delays_new();
     if (st->delays == NULL) {
         return SIM_INTERNAL;
@@ -187,14 +196,15 @@ int stream_run(stream *st, const stream_options *options, source *src, angles_cs
     if (result != SIM_OK) {
         return result;
     }
-    result = src->options.live ? play_live(st) : play_track(st);
+    result = src->options.live != NULL ? play_live(st) : play_track(st);
     result = finish(st, result);
     session_close(&st->s);
     if (result == SIM_OK && !account_balances(&st->account)) {
         result = LIMBER_UNBALANCED;
     }
-    /* live lines have no other end */
-    return result == SIM_OK && st->interrupted && !src->options.live ? LIMBER_INTERRUPTED : result;
+    /* live sources have no other end */
+    return result == SIM_OK && st->interrupted && src->options.live == NULL ? LIMBER_INTERRUPTED
+                                                                            : result;
 }
 
 void stream_free(stream *st)

@@ -17,7 +17,7 @@ enum {
 int stream_check_pace(stream *st)
 {
     message ask = {.type = MESSAGE_PARAM_GET, .param_get = {.which = PARAM_IN_FORCE}};
-    if (!st->options.arm || st->source->options.live || !(st->options.speed > 0.0)) {
+    if (!st->options.arm || st->source->options.live != NULL || !(st->options.speed > 0.0)) {
         return SIM_OK;
     }
     snprintf(ask.param_get.name, sizeof ask.param_get.name, "%s", HOLD_PARAMETER);
@@ -95,6 +95,9 @@ void stream_step_arming(stream *st)
         }
         if (st->s.heartbeat.state == DEVICE_ACTIVE) {
             st->arming = ARMING_DONE;
+            if (st->armings_n++ > 0) {
+                limber_note("the device is ACTIVE again");
+            }
         } else if (now_us - st->asked_us > BLEND_MAX_US) {
             (void)limber_refuse("the device is still %s 10 s after ARM; limber info",
                                 session_state_name(&st->s));
@@ -114,12 +117,19 @@ bool stream_was_dropped(stream *st)
         st->state == DEVICE_HOLD) {
         return false;
     }
+    const bool waited = st->state == DEVICE_RELAX || st->state == DEVICE_LIMP;
+    if (waited && st->source->options.live != NULL) {
+        limber_note(
+            "the device waited for too long and is in %s; it is armed again when poses come",
+            message_value_name(&message_values_device_states, st->state));
+        stream_begin_arming(st);
+        return false;
+    }
     const char *const advice =
         st->state == DEVICE_FAULT || st->state == DEVICE_ESTOP ? "limber info tells why, limber "
                                                                  "clear leaves it"
-        : st->state == DEVICE_RELAX || st->state == DEVICE_LIMP
-            ? "no poses came for too long; --resample 100 fills the gaps of a track"
-            : "somebody else has disarmed it";
+        : waited ? "no poses came for too long; --resample 100 fills the gaps of a track"
+                 : "somebody else has disarmed it";
     (void)limber_refuse("the device stopped following after %.1f s: it is in %s (%s); %s",
                         st->played_s, message_value_name(&message_values_device_states, st->state),
                         message_value_meaning(&message_values_device_states, st->state), advice);

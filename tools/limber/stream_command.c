@@ -14,13 +14,17 @@ enum {
     OPTION_RESAMPLE,
     OPTION_UP,
     OPTION_LEFT_HANDED,
+    OPTION_RIGHT_HANDED,
     OPTION_SCALE,
     OPTION_MOUNT,
     OPTION_ARM,
     OPTION_DRY,
     OPTION_RECONNECT,
     OPTION_REARM,
-    OPTION_ANGLES
+    OPTION_GRAPHICS,
+    OPTION_ANGLES,
+    OPTION_POSES,
+    OPTION_MONITOR
 };
 
 static const char EXAMPLES[] =
@@ -29,10 +33,33 @@ static const char EXAMPLES[] =
     "  limber stream slow.csv --resample 100 --speed 0.5\n"
     "  limber stream unity.txt --up y --left-handed --mount 0,0,0.12,0,90,0\n"
     "  limber stream hand.txt --port pty:build/rod --angles angles.csv --json\n"
+    "  limber stream hand.txt --poses run.txt            # then: limber-sim replay run.txt "
+    "--report "
+    "run.html\n"
+    "  limber stream vrpn:Tracker0@192.168.1.5           # OptiTrack, Vicon, any VRPN server\n"
+    "  limber stream osc:39539                           # Vive, VMC apps, Unity on this PC\n"
+    "  limber stream osc:0.0.0.0:39539#LHR-1B2C3D4E      # from another PC, that tracker\n"
+    "  limber stream osc:39539 --graphics osc:127.0.0.1:9000\n"
     "  tracker | limber stream -                         # lines on stdin, sent as they come\n"
     "  limber stream - --speed 1 < hand.txt              # at their own times\n\n"
     "Tracks: TUM (timestamp tx ty tz qx qy qz qw) or CSV with named columns; lines on stdin: TUM. "
     "s, m.\n"
+    "Live sources may come late, fall silent and come back: the device holds, and is armed again "
+    "if it has\n"
+    "relaxed or gone limp meanwhile.\n"
+    "  -                                  TUM lines on standard input\n"
+    "  vrpn:TRACKER@HOST[:3883][#SENSOR]  by TCP; sensor 0, axes as the server has them, often "
+    "--up y\n"
+    "  osc:[127.0.0.1:]PORT[#SERIAL]      by UDP, /VMC/Ext/Tra/Pos ,sfffffff; the first tracker "
+    "heard;\n"
+    "                                     Unity's axes unless --up or --right-handed tell others\n"
+    "A pose is as old as its way here: by the source's times where it writes them (VRPN; the "
+    "quickest of\n"
+    "the last seconds counts as no way at all), else by its arrival.\n"
+    "--graphics: /limber/angles ,iiff... (tick, state, theta and phi of each joint in rad) and\n"
+    "/limber/nodes ,iiifff... (tick, first node, nodes of the rod, x y z of each in m, z up; for "
+    "Unity\n"
+    "-x z -y). Where the device's nodes_rate is 0 it is 60 for as long as that lasts.\n"
     "A track is held at its first pose until the device follows, then played; positions count from "
     "its first pose.\n"
     "--mount: from the tracker to the rod's base, seen from the tracker: m along its axes, then "
@@ -43,12 +70,15 @@ static const char EXAMPLES[] =
     "Exit codes: 0 fine, 1 poses unaccounted for, 2 bad input, 3 internal failure,\n"
     "            4 device not there, lost or refusing, 130 interrupted (and disarmed)\n";
 
+enum { Y_UP = 1, Z_UP, LEFT_HANDED, RIGHT_HANDED }; /* 0: not told */
+
 typedef struct {
     link_options link;
     stream_options stream;
     source_options source;
-    bool speed_given;
-    char *angles_path;
+    bool speed_given, monitor;
+    int up, handed;
+    char *angles_path, *poses_path, *graphics;
 } choices;
 
 static int take_speed(choices *c, const char *text)
@@ -68,8 +98,8 @@ static int take_speed(choices *c, const char *text)
 
 static int take_up(choices *c, const char *text)
 {
-    c->source.track.y_up = strcmp(text, "y") == 0;
-    return c->source.track.y_up || strcmp(text, "z") == 0
+    c->up = strcmp(text, "y") == 0 ? Y_UP : Z_UP;
+    return c->up == Y_UP || strcmp(text, "z") == 0
                ? SIM_OK
                : sim_complain("--up %.40s: must be y or z: the track's axis that points up", text);
 }
@@ -84,7 +114,10 @@ static int take_option(choices *c, int option, const char *text)
     case OPTION_UP:
         return take_up(c, text);
     case OPTION_LEFT_HANDED:
-        c->source.track.left_handed = true;
+        c->handed = LEFT_HANDED;
+        return SIM_OK;
+    case OPTION_RIGHT_HANDED:
+        c->handed = RIGHT_HANDED;
         return SIM_OK;
     case OPTION_SCALE:
         return link_number("--scale", text, 1e-6, 1e6, &c->source.track.scale);
@@ -101,6 +134,17 @@ static int take_option(choices *c, int option, const char *text)
         return SIM_OK;
     case OPTION_REARM:
         c->stream.reconnect = c->stream.rearm = true;
+        return SIM_OK;
+    case OPTION_GRAPHICS:
+        free(c->graphics);
+        c->graphics = strdup(text);
+        return SIM_OK;
+    case OPTION_MONITOR:
+        c->monitor = true;
+        return SIM_OK;
+    case OPTION_POSES:
+        free(c->poses_path);
+        c->poses_path = strdup(text);
         return SIM_OK;
     default:
         free(c->angles_path);
@@ -129,28 +173,65 @@ static int take_options(poptContext context, choices *c, bool *help)
     return result;
 }
 
+/* Axes that nobody has told are right-handed and z up, but for sources that come from Unity. */
+static void settle_axes(choices *c)
+{
+    const bool unity = c->source.live != NULL && c->source.live->unity;
+    c->source.track.y_up = c->up == Y_UP || (c->up == 0 && unity);
+    c->source.track.left_handed = c->handed == LEFT_HANDED || (c->handed == 0 && unity);
+}
+
+/* The view needs the terminal for itself. */
+static int settle_view(const choices *c)
+{
+    if (c->monitor && (c->link.json != 0 || !monitor_view_possible())) {
+        return sim_complain("--monitor needs a terminal to draw on, and not --json");
+    }
+    return SIM_OK;
+}
+
 /* Standard input is live unless it is a file or somebody gave it a pace. */
 static int settle_source(choices *c, const char *path)
 {
     struct stat status;
     const bool is_file = fstat(STDIN_FILENO, &status) == 0 && S_ISREG(status.st_mode);
-    c->source.live = strcmp(path, "-") == 0 && !c->speed_given && !is_file;
-    if (c->source.live && c->source.resample_hz > 0.0) {
+    c->source.live = strcmp(path, "-") == 0 ? (c->speed_given || is_file ? NULL : &live_lines_kind)
+                                            : live_source_kind(path);
+    settle_axes(c);
+    if (c->source.live == &live_lines_kind && c->source.resample_hz > 0.0) {
         return sim_complain("--resample wants the whole track: add --speed 1, and standard input "
                             "is read to its end first");
+    }
+    if (c->source.live != NULL && (c->speed_given || c->source.resample_hz > 0.0)) {
+        return sim_complain("%.100s: --speed and --resample are for tracks, this comes as it comes",
+                            path);
     }
     return SIM_OK;
 }
 
-static int play(choices *c, source *src)
+static int play(choices *c, source *src, graphics *drawn)
 {
     angles_csv csv;
     stream st = {0};
+    monitor_view view;
+    pose_track poses;
     int result = angles_csv_open(&csv, c->angles_path, 0.0);
     if (result == SIM_OK) {
+        result = pose_track_open(&poses, c->poses_path);
+        result = result == SIM_OK ? SIM_OK : angles_csv_close(&csv, result);
+        c->stream.poses = &poses;
+    }
+    if (result == SIM_OK) {
         interrupt_catch();
-        result = stream_run(&st, &c->stream, src, &csv);
+        c->stream.view = c->monitor && monitor_view_open(&view) ? &view : NULL;
+        result = stream_run(&st, &c->stream, src, &csv, drawn);
+        if (c->stream.view != NULL) {
+            monitor_view_close(&view);
+        }
+        const int closed = pose_track_close(&poses);
         result = angles_csv_close(&csv, result);
+        const int finished = outputs_finish(closed);
+        result = result == SIM_OK ? finished : result;
         if (st.account.sent > 0 && c->link.json) {
             stream_print_json(&st, result);
         } else if (st.account.sent > 0) {
@@ -164,19 +245,27 @@ static int play(choices *c, source *src)
 static int run(poptContext context, choices *c)
 {
     source src;
+    graphics drawn = {0};
     const char *const path = options_one_argument(context, "stream", "track");
     int result = path == NULL ? SIM_BAD_INPUT : settle_source(c, path);
     if (result == SIM_OK) {
+        result = settle_view(c);
+    }
+    if (result == SIM_OK) {
         result = link_choose(&c->link);
+    }
+    if (result == SIM_OK && c->graphics != NULL) {
+        result = graphics_open(&drawn, c->graphics);
     }
     if (result == SIM_OK) {
         c->stream.port = c->link.chosen;
         result = source_open(&src, path, &c->source);
-    }
-    if (result == SIM_OK) {
-        result = play(c, &src);
+        if (result == SIM_OK) {
+            result = play(c, &src, c->graphics != NULL ? &drawn : NULL);
+        }
         source_free(&src);
     }
+    graphics_close(&drawn);
     return result;
 }
 
@@ -196,10 +285,19 @@ int limber_stream_command(int argc, const char **argv)
          "poses a second, filled in between those of the track", "HZ"},
         {"angles", 'a', POPT_ARG_STRING, NULL, OPTION_ANGLES,
          "write the angles that come back: t,theta1,phi1,... s, rad", "OUT.csv"},
-        {"up", 0, POPT_ARG_STRING, NULL, OPTION_UP, "the track's axis that points up: y or z (z)",
-         "AXIS"},
+        {"poses", 0, POPT_ARG_STRING, NULL, OPTION_POSES,
+         "write the poses that the device used, tick by tick: a track for limber-sim replay",
+         "OUT.txt"},
+        {"monitor", 0, POPT_ARG_NONE, NULL, OPTION_MONITOR,
+         "show it live in the terminal; q stops, as Ctrl-C does", NULL},
+        {"graphics", 'g', POPT_ARG_STRING, NULL, OPTION_GRAPHICS,
+         "send angles and nodes on to whatever draws the rod", "osc:HOST:PORT"},
+        {"up", 0, POPT_ARG_STRING, NULL, OPTION_UP,
+         "the track's axis that points up: y or z (z; osc: y)", "AXIS"},
         {"left-handed", 0, POPT_ARG_NONE, NULL, OPTION_LEFT_HANDED,
          "the track's axes are left-handed (Unity): mirror x", NULL},
+        {"right-handed", 0, POPT_ARG_NONE, NULL, OPTION_RIGHT_HANDED,
+         "they are not (the default, but for osc:)", NULL},
         {"scale", 0, POPT_ARG_STRING, NULL, OPTION_SCALE,
          "metres per unit of the track's positions (1)", "METRES"},
         {"mount", 0, POPT_ARG_STRING, NULL, OPTION_MOUNT, "from the tracker to the rod's base",
@@ -212,13 +310,15 @@ int limber_stream_command(int argc, const char **argv)
     };
     argv[0] = "limber stream"; /* what the help calls it */
     poptContext context = poptGetContext(argv[0], argc, argv, table, 0);
-    poptSetOtherOptionHelp(context, "TRACK [OPTION...]");
+    poptSetOtherOptionHelp(context, "TRACK|LIVE SOURCE [OPTION...]");
     bool help;
     int result = take_options(context, &c, &help);
     if (result == SIM_OK && !help) {
         result = run(context, &c);
     }
     free(c.angles_path);
+    free(c.poses_path);
+    free(c.graphics);
     poptFreeContext(context);
     link_close(&c.link, NULL);
     return result;

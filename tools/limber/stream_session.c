@@ -7,15 +7,23 @@
 
 enum { RETRY_US = 250000, STATS_TRIES_N = 5, STATS_PAUSE_US = 20000 };
 
-static void listen(void *context, const message *m, const frame *f, uint64_t at_us)
+static void hear(void *context, const message *m, const frame *f, uint64_t at_us)
 {
     stream *st = context;
+    monitor_state_take(&st->monitor, m, f->t_us);
     switch (m->type) {
     case MESSAGE_ANGLES:
         st->state = m->angles.state;
         st->angles_n++;
         pose_delays_angles(st->delays, &m->angles, f->t_us, at_us, &st->s.clock);
         angles_csv_add(st->csv, &m->angles);
+        graphics_angles(st->graphics, &m->angles);
+        break;
+    case MESSAGE_NODES:
+        graphics_nodes(st->graphics, &m->nodes);
+        break;
+    case MESSAGE_POSE_LOG:
+        pose_track_add(st->options.poses, &m->pose_log);
         break;
     case MESSAGE_HEARTBEAT:
         st->state = m->heartbeat.state;
@@ -36,7 +44,7 @@ static void listen(void *context, const message *m, const frame *f, uint64_t at_
 
 static double poses_hz(const stream *st)
 {
-    const bool paced = !st->source->options.live && st->options.speed > 0.0;
+    const bool paced = st->source->options.live == NULL && st->options.speed > 0.0;
     return !paced || !st->options.arm /* who only computes may be slow */
                ? 0.0
                : st->options.speed / source_interval_s(st->source);
@@ -45,16 +53,24 @@ static double poses_hz(const stream *st)
 static int begin_session(stream *st)
 {
     st->in_session = true;
+    monitor_state_begin(&st->monitor, st->options.port, &st->s.device);
+    st->monitor.delays = st->delays;
     st->session_sent_n = 0;
     pose_delays_session(st->delays, st->s.device.tick_hz);
-    st->s.listener = listen;
+    st->s.listener = hear;
     st->s.context = st;
     snprintf(st->device, sizeof st->device, "%s %s", st->s.device.device, st->s.device.build);
     st->links_n = st->s.device.links_n;
     int result = session_wait_for_state(&st->s);
     st->state = st->s.heartbeat.state;
     if (result == SIM_OK) {
+        result = pose_track_begin(st->options.poses, &st->s);
+    }
+    if (result == SIM_OK) {
         result = stats_request(&st->s, &st->before);
+    }
+    if (result == SIM_OK) {
+        stream_begin_graphics(st);
     }
     return result;
 }
@@ -73,6 +89,7 @@ int stream_find_again(stream *st)
     const message_stats before = st->before;
     const uint64_t sent_n = st->session_sent_n, unseen_n = pose_delays_unseen(st->delays);
     const bool armed = st->arming != ARMING_OFF;
+    monitor_state_lost(&st->monitor, st->s.why);
     session_close(&st->s);
     st->in_session = false;
     while (!session_open(&st->s, st->options.port, (float)poses_hz(st))) {
