@@ -149,6 +149,15 @@ void commands_take(device *d, const message *m, const frame *header)
         }
         return;
     }
+    if (changes && !stops && request_id == 0) {
+        const params_refusal why = {.reason = REASON_BOUNDS,
+                                    .entry = -1,
+                                    .min = 1.0f,
+                                    .max = (float)UINT16_MAX,
+                                    .field = "request_id"};
+        answers_refuse(d, request_id, m->type, &why);
+        return;
+    }
     if (changes && !stops &&
         (is_under_way(d, request_id, m->type) || answers_repeat(d, request_id, m->type))) {
         return;

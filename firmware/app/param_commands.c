@@ -143,7 +143,7 @@ static void take_save(device *d, uint16_t request_id)
 {
     if (!supervisor_duties[d->supervisor.state].save) {
         answers_refuse_for(d, request_id, MESSAGE_PARAM_SAVE, REASON_STATE, "only while DISARMED");
-    } else if (d->saving.id != 0 || d->arming.id != 0) {
+    } else if (d->saving.id != 0 || d->arming.id != 0 || d->servicing.id != 0) {
         answers_refuse_for(d, request_id, MESSAGE_PARAM_SAVE, REASON_BUSY, NULL);
     } else {
         const uint32_t bytes_n = saved_params_pack(&d->params.in_force, d->settings_bytes);
@@ -179,6 +179,7 @@ void param_commands_take(device *d, const message *m)
         break;
     case MESSAGE_PARAM_DEFAULTS:
         params_stage_defaults(&d->params);
+        d->params.staged.device.servo_kind = (float)d->config.servos_kind;
         answers_acknowledge(d, request_id, MESSAGE_PARAM_DEFAULTS);
         break;
     case MESSAGE_PRESET_LIST:

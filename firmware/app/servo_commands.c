@@ -59,6 +59,11 @@ static bool check(device *d, const message *m, const servo_request *request)
         why.reason = REASON_UNSUPPORTED;
         why.field = "servo_kind";
         why.text = "the servo_kind parameter says that there are none: set it to bus or pwm";
+    } else if (d->servos.config.kind == SERVOS_PWM &&
+               (request->kind == SERVO_REQUEST_ID || request->kind == SERVO_REQUEST_BAUD)) {
+        why.reason = REASON_UNSUPPORTED;
+        why.field = "servo_kind";
+        why.text = "hobby servos have no id and no baud rate";
     } else if (request->id > SERVO_ID_MAX || request->new_id > SERVO_ID_MAX) {
         const bool new_one = request->new_id > SERVO_ID_MAX;
         why.value = new_one ? (float)request->new_id : (float)request->id;

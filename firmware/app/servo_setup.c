@@ -42,15 +42,37 @@ static bool check_hardware(const servos_config *config, params_refusal *why)
     if (servos_check(config, &trouble)) {
         return true;
     }
-    const bool count = trouble.kind == SERVO_TROUBLE_COUNT;
-    *why = (params_refusal){.reason = REASON_COMBINATION,
-                            .entry = trouble.servo,
-                            .value = count ? (float)config->servos_n : (float)trouble.id,
-                            .field = count                                   ? "links"
-                                     : trouble.kind == SERVO_TROUBLE_BAUD    ? "servo_baud"
-                                     : trouble.kind == SERVO_TROUBLE_CHANNEL ? "servo_id"
-                                                                             : "servo_kind",
-                            .text = servo_trouble_text(trouble.kind)};
+    const bool pwm = config->kind == SERVOS_PWM;
+    switch (trouble.kind) {
+    case SERVO_TROUBLE_COUNT:
+        *why = (params_refusal){REASON_COMBINATION,
+                                -1,
+                                0.5f * (float)config->servos_n,
+                                1.0f,
+                                pwm ? 0.5f * (float)HAL_PWM_CHANNELS_N : (float)ROD_MAX_LINKS,
+                                "links",
+                                pwm ? "two hobby servos a link, and 8 channels"
+                                    : servo_trouble_text(trouble.kind)};
+        break;
+    case SERVO_TROUBLE_BAUD:
+        *why = (params_refusal){REASON_COMBINATION,
+                                -1,
+                                (float)config->bus_baud,
+                                9600.0f,
+                                4500000.0f,
+                                "servo_baud",
+                                "9600, 57600, 115200, or 1, 2, 3, 4, 4.5 million"};
+        break;
+    default:
+        *why = (params_refusal){REASON_COMBINATION,
+                                trouble.servo,
+                                (float)trouble.id,
+                                1.0f,
+                                pwm ? (float)HAL_PWM_CHANNELS_N : (float)SERVO_ID_MAX,
+                                "servo_id",
+                                servo_trouble_text(trouble.kind)};
+        break;
+    }
     return false;
 }
 
@@ -61,14 +83,14 @@ static bool choose_period(const params_set *set, const servos_config *config, se
 {
     const float least_s = servos_period_s(config), asked_hz = set->device.servo_hz;
     if (asked_hz * least_s > 1.0f) {
-        *why = (params_refusal){REASON_LINE_RATE,
+        const bool pwm = config->kind == SERVOS_PWM;
+        *why = (params_refusal){pwm ? REASON_COMBINATION : REASON_LINE_RATE,
                                 -1,
                                 asked_hz,
                                 0.0f,
                                 1.0f / least_s,
                                 "servo_rate",
-                                config->kind == SERVOS_PWM
-                                    ? "more than pwm_rate"
+                                pwm ? "more than pwm_rate"
                                     : "a set of goals is 14 + 5 bytes a servo, 10 bits each, and "
                                       "one question more: see servo_baud"};
         return false;

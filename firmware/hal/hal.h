@@ -1,7 +1,7 @@
 /* hal.h - everything the app needs of hardware, as one struct of functions.
  *
  * A board, the simulator and every test fill one in; the app knows no register and no clock of its own.
- * All functions are called from the main loop only, never from an interrupt, and none blocks: what
+ * All functions are called from the main loop only, never from an interrupt, and none but flash_erase blocks: what
  * cannot be done at once is refused or done in part, and the return value says so. `context` is handed
  * back to each of them.
  */

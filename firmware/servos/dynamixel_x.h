@@ -37,6 +37,11 @@ enum { DXL_X_BUS_WATCHDOG_UNIT_US = 20000 };
 /* Operating Modes that follow Goal Position. */
 enum { DXL_X_MODE_POSITION = 3, DXL_X_MODE_EXTENDED = 4, DXL_X_MODE_CURRENT_BASED = 5 };
 
+static inline bool dxl_x_follows(uint8_t mode)
+{
+    return mode >= DXL_X_MODE_POSITION && mode <= DXL_X_MODE_CURRENT_BASED;
+}
+
 /* Positions: 4096 units a turn, counter-clockwise, 2048 in the middle. */
 enum { DXL_X_CENTER_UNITS = 2048, DXL_X_TURN_UNITS = 4096 };
 #define DXL_X_UNITS_PER_RAD 651.898647f /* 4096 / (2 pi) */

@@ -79,7 +79,7 @@ static void took_setup(servo_bus *b)
     const uint8_t *answer = b->question.answer;
     const uint8_t delay = answer[DXL_X_RETURN_DELAY - DXL_X_ID];
     const uint8_t mode = answer[DXL_X_OPERATING_MODE - DXL_X_ID];
-    if (mode < DXL_X_MODE_POSITION || mode > DXL_X_MODE_CURRENT_BASED) {
+    if (!dxl_x_follows(mode)) {
         fail_here(b, SERVO_TROUBLE_MODE, mode);
     } else if (delay != 0) {
         b->step = STEP_DELAY;

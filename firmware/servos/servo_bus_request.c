@@ -3,7 +3,12 @@
 
 #include "servo_round.h"
 
-enum { MOVE_US = 800000, MOVE_EVERY_US = 20000 };
+enum {
+    MOVE_US = 800000, /* there, and as long back */
+    MOVE_EVERY_US = 20000,
+    ARRIVE_US = 500000,
+    ARRIVED_UNITS = 30, /* 2.6 degrees */
+};
 
 /* Who it is about: an id that has been changed is the new one. */
 static uint8_t id_now(const servo_bus *b)
@@ -193,32 +198,83 @@ static void ask_watchdog_on(servo_bus *b)
     write_byte(b, DXL_X_BUS_WATCHDOG, SERVO_BUS_WATCHDOG_US / DXL_X_BUS_WATCHDOG_UNIT_US);
 }
 
-/* How far it has turned, 0 ... 1 ... 0, after so long. */
-static float turned(uint32_t after_us)
+static void ask_mode(servo_bus *b)
 {
-    const uint32_t end_us = 2 * MOVE_US;
-    const uint32_t to_go_us = after_us < MOVE_US  ? after_us
-                              : after_us < end_us ? end_us - after_us
-                                                  : 0;
-    return (float)to_go_us * (1.0f / (float)MOVE_US);
+    servo_bus_ask_read(b, id_now(b), DXL_X_OPERATING_MODE, 1, SERVO_BUS_TRIES);
 }
 
-static void ask_move(servo_bus *b)
+static void took_mode(servo_bus *b)
 {
-    const uint32_t after_us = b->now_us - b->since_us;
-    if (b->now_us - b->moved_us < MOVE_EVERY_US) {
+    const uint8_t mode = b->question.answer[0];
+    if (!dxl_x_follows(mode)) {
+        servo_bus_fail(b, (servo_trouble){SERVO_TROUBLE_MODE, -1, id_now(b), mode});
         return;
     }
-    b->moved_us = b->now_us;
-    const float way = b->request.turn_rad * DXL_X_UNITS_PER_RAD * turned(after_us);
-    write_goal(b, b->base_units + servo_nearest(way));
+    servo_bus_next(b);
+}
+
+/* A share of the turn, from where it was. */
+static int32_t turned_units(const servo_bus *b, float share)
+{
+    return b->base_units + servo_nearest(b->request.turn_rad * DXL_X_UNITS_PER_RAD * share);
+}
+
+/* The share of its time that a move has lasted. */
+static float lasted(const servo_bus *b)
+{
+    const uint32_t after_us = b->now_us - b->since_us;
+    return after_us < MOVE_US ? (float)after_us * (1.0f / (float)MOVE_US) : 1.0f;
+}
+
+static void move_to(servo_bus *b, float share)
+{
+    if (b->now_us - b->moved_us >= MOVE_EVERY_US) {
+        b->moved_us = b->now_us;
+        write_goal(b, turned_units(b, share));
+    }
+}
+
+static void ask_move_there(servo_bus *b)
+{
+    move_to(b, lasted(b));
+}
+
+static void ask_move_back(servo_bus *b)
+{
+    move_to(b, 1.0f - lasted(b));
 }
 
 static void took_move(servo_bus *b)
 {
-    if (b->now_us - b->since_us >= 2 * MOVE_US) {
+    if (b->now_us - b->since_us >= MOVE_US) {
         servo_bus_next(b);
     }
+}
+
+static void ask_position(servo_bus *b)
+{
+    servo_bus_ask_read(b, id_now(b), DXL_X_PRESENT_POSITION, 4, SERVO_BUS_TRIES);
+}
+
+/* A servo may lag, and takes goals that it then does not follow: only where it stands tells. */
+static void wait_for(servo_bus *b, int32_t goal_units)
+{
+    const int32_t off_units = (int32_t)dxl_u32(b->question.answer) - goal_units;
+    if (off_units <= ARRIVED_UNITS && off_units >= -ARRIVED_UNITS) {
+        servo_bus_next(b);
+    } else if (b->now_us - b->since_us >= ARRIVE_US) {
+        servo_bus_fail(b, (servo_trouble){SERVO_TROUBLE_STUCK, -1, id_now(b), 0});
+    }
+}
+
+static void took_there(servo_bus *b)
+{
+    wait_for(b, turned_units(b, 1.0f));
+}
+
+static void took_back(servo_bus *b)
+{
+    wait_for(b, b->base_units);
 }
 
 static const servo_bus_step PING = {ask_ping, took_ping, NULL};
@@ -238,7 +294,11 @@ static const servo_bus_step GOAL_HERE = {ask_goal_here, NULL, NULL};
 static const servo_bus_step GOAL_HELD = {ask_goal_held, took_goal_held, NULL};
 static const servo_bus_step TORQUE_ON = {ask_torque_on, NULL, NULL};
 static const servo_bus_step WATCHDOG_ON = {ask_watchdog_on, NULL, NULL};
-static const servo_bus_step MOVE = {ask_move, took_move, NULL};
+static const servo_bus_step MODE = {ask_mode, took_mode, NULL};
+static const servo_bus_step MOVE_THERE = {ask_move_there, took_move, NULL};
+static const servo_bus_step THERE = {ask_position, took_there, NULL};
+static const servo_bus_step MOVE_BACK = {ask_move_back, took_move, NULL};
+static const servo_bus_step BACK = {ask_position, took_back, NULL};
 
 static const servo_bus_step *const PING_SCRIPT[] = {&SERVO_BUS_BOOT, &PING, &HARDWARE, &READINGS,
                                                     &DONE};
@@ -249,9 +309,9 @@ static const servo_bus_step *const BAUD_SCRIPT[] = {
     &SERVO_BUS_BOOT, &NEW_BAUD, &PING,     &TORQUE_OFF, &SET_BAUD,
     &SETTLE_BAUD,    &PING,     &HARDWARE, &READINGS,   &DONE};
 static const servo_bus_step *const TEST_SCRIPT[] = {
-    &SERVO_BUS_BOOT, &PING,       &SOUND,     &TORQUE_OFF, &WATCHDOG_OFF,
-    &READINGS,       &GOAL_HERE,  &GOAL_HELD, &TORQUE_ON,  &WATCHDOG_ON,
-    &MOVE,           &TORQUE_OFF, &HARDWARE,  &READINGS,   &DONE};
+    &SERVO_BUS_BOOT, &PING,      &SOUND,     &MODE,        &TORQUE_OFF, &WATCHDOG_OFF, &READINGS,
+    &GOAL_HERE,      &GOAL_HELD, &TORQUE_ON, &WATCHDOG_ON, &MOVE_THERE, &SOUND,        &THERE,
+    &MOVE_BACK,      &SOUND,     &BACK,      &TORQUE_OFF,  &READINGS,   &DONE};
 
 const servo_bus_step *const *servo_bus_request_script(const servo_request *request)
 {

@@ -34,6 +34,7 @@ typedef enum {
     SERVO_TROUBLE_MODE,      /* does not follow goal positions: detail is its Operating Mode */
     SERVO_TROUBLE_TAKEN,     /* another servo has the new id */
     SERVO_TROUBLE_FAR,       /* many turns away from its middle */
+    SERVO_TROUBLE_STUCK,     /* does not get where it is told to */
     SERVO_TROUBLES_N,
 } servo_trouble_kind;
 

@@ -28,7 +28,8 @@ const char *servo_trouble_text(uint8_t kind)
         [SERVO_TROUBLE_MODE] = "does not follow positions: set its Operating Mode to 3 or 4",
         [SERVO_TROUBLE_FAR] =
             "is many turns from its middle: turn it back, or switch it off and on",
-        [SERVO_TROUBLE_TAKEN] = "is not free: another servo has that id",
+        [SERVO_TROUBLE_TAKEN] = "cannot have that id: another servo answers to it",
+        [SERVO_TROUBLE_STUCK] = "does not turn as told: check load, supply and its own limits",
     };
     return kind < SERVO_TROUBLES_N && TEXTS[kind] != NULL ? TEXTS[kind] : "has an unknown trouble";
 }
@@ -189,7 +190,11 @@ static void follow_request(servos *s, uint32_t now_us)
         s->info = s->bus.info;
         end_request(s, SERVO_REQUEST_DONE, now_us);
     } else if (s->bus.state == SERVO_BUS_FAILED) {
-        s->trouble = s->bus.trouble;
+        const servo_trouble trouble = s->bus.trouble;
+        if (s->request.kind == SERVO_REQUEST_TEST) {
+            servos_off(s); /* it may have torque, and not hear that it should not */
+        }
+        s->trouble = trouble;
         end_request(s, SERVO_REQUEST_FAILED, now_us);
     }
 }

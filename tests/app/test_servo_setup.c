@@ -87,7 +87,7 @@ static void hobby_servos_are_served_once_a_pulse(void)
     TEST_ASSERT_TRUE(servo_setup_make(&setup, &all.in_force, &why));
     TEST_ASSERT_EQUAL_INT(4, setup.period_ticks);
     all.in_force.device.servo_hz = 400.0f;
-    refused(REASON_LINE_RATE, "servo_rate");
+    refused(REASON_COMBINATION, "servo_rate");
 }
 
 static void what_cannot_be_driven_is_refused(void)
@@ -95,6 +95,7 @@ static void what_cannot_be_driven_is_refused(void)
     all.in_force.device.servo_kind = SERVOS_PWM;
     all.in_force.rod.links_n = 5;
     refused(REASON_COMBINATION, "links");
+    TEST_ASSERT_TRUE(why.value > 4.9f && why.value < 5.1f && why.max > 3.9f && why.max < 4.1f);
     all.in_force.rod.links_n = 4;
     all.in_force.device.servo_id[3] = 9.0f;
     refused(REASON_COMBINATION, "servo_id");
@@ -106,6 +107,7 @@ static void what_cannot_be_driven_is_refused(void)
     TEST_ASSERT_TRUE(servo_setup_make(&setup, &all.in_force, &why));
     bus_of(4, 250000); /* no such rate in the X series */
     refused(REASON_COMBINATION, "servo_baud");
+    TEST_ASSERT_TRUE(why.value > 249999.0f && why.value < 250001.0f && why.min > 9599.0f);
 }
 
 int main(void)

@@ -24,11 +24,16 @@ static bool has_torque(void)
     return servo_plant_has_torque(&b->host.plant);
 }
 
-static void inject(const char *text)
+static void inject_after(double wait_s, const char *text)
 {
     char line[64];
-    snprintf(line, sizeof line, text, b->host.elapsed_s);
+    snprintf(line, sizeof line, text, b->host.elapsed_s + wait_s);
     TEST_ASSERT_EQUAL_INT(SIM_OK, injection_add(&b->host.injection, line));
+}
+
+static void inject(const char *text)
+{
+    inject_after(0.0, text);
 }
 
 static void set(const char *name, float value)
@@ -244,6 +249,32 @@ static void test_a_servo_is_tested_and_left_limp(void)
     TEST_ASSERT_FALSE(b->host.plant.powered);
 }
 
+/* A test that ends well says something about the servo. */
+static void test_a_test_finds_a_servo_that_gives_up_and_one_that_does_not_turn(void)
+{
+    inject_after(1.2, "servo@%g+9:3");
+    ask((message){.type = MESSAGE_SERVO_TEST, .servo_test = {.id = 3, .turn_rad = 0.4f}});
+    says("hardware error", refused(REASON_SERVO_HARDWARE)->text);
+    TEST_ASSERT_FALSE(b->host.plant.powered);
+    b->host.plant.speed_rad_s = 0.02f;
+    ask((message){.type = MESSAGE_SERVO_TEST, .servo_test = {.id = 2, .turn_rad = 0.4f}});
+    says("does not turn as told", refused(REASON_SERVO)->text);
+    TEST_ASSERT_FALSE(b->host.plant.powered);
+}
+
+static void test_requests_without_an_id_are_refused(void)
+{
+    const message arm = {.type = MESSAGE_ARM};
+    say_as(&arm, 1);
+    sway(10, 10, 0.05f);
+    TEST_ASSERT_EQUAL_STRING("request_id", b->newest[MESSAGE_NACK].nack.field);
+    TEST_ASSERT_FALSE(b->host.plant.powered);
+    const message stop = {.type = MESSAGE_ESTOP}; /* but for these */
+    say_as(&stop, 2);
+    sway(10, 10, 0.05f);
+    TEST_ASSERT_EQUAL_INT(SUPERVISOR_ESTOP, state_now());
+}
+
 static void test_a_test_ends_with_a_disarm(void)
 {
     ask((message){.type = MESSAGE_SERVO_TEST, .servo_test = {.id = 3, .turn_rad = 0.5f}});
@@ -289,6 +320,8 @@ int main(void)
     RUN_TEST(test_nothing_changes_while_it_prepares);
     RUN_TEST(test_servos_are_set_up_over_the_wire_while_disarmed);
     RUN_TEST(test_a_servo_is_tested_and_left_limp);
+    RUN_TEST(test_a_test_finds_a_servo_that_gives_up_and_one_that_does_not_turn);
+    RUN_TEST(test_requests_without_an_id_are_refused);
     RUN_TEST(test_a_test_ends_with_a_disarm);
     RUN_TEST(test_without_servos_it_arms_and_drives_nothing);
     return UNITY_END();
