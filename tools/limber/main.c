@@ -14,7 +14,8 @@ static const struct {
 } COMMANDS[] = {
     {"ports", limber_ports_command, "list the serial ports, and which one a board may hang on"},
     {"info", limber_info_command, "who is there: build, state, limits, counters"},
-    {"stream", limber_stream_command, "let the rod follow a track, or a live tracker: VRPN, OSC, stdin"},
+    {"stream", limber_stream_command,
+     "let the rod follow a track, or a live tracker: VRPN, OSC, stdin"},
     {"params", limber_params_command, "list, get, set, save, load, defaults"},
     {"preset", limber_preset_command, "make it a foil, a whip, ...; also while it moves"},
     {"arm", limber_arm_command, "give the servos torque"},
