@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
-"""tools/dev flash, with tools that only write down how they were called, and USB devices made of files."""
+"""tools/dev flash, with tools that only write down how they were called, and USB devices made of files; and what
+tools/dev builds before it flashes, boots an image or helps."""
 import contextlib
 import io
 import pathlib
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
 from unittest import mock
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools" / "firmware"))
+TOOLS = pathlib.Path(__file__).resolve().parents[2] / "tools"
+sys.path.insert(0, str(TOOLS / "firmware"))
 import flash  # noqa: E402  (where it is found must be said first)
 
 ST_LINK, DFU, OLIMEX = ("0483", "374b"), ("0483", "df11"), ("15ba", "002b")
@@ -95,6 +99,14 @@ class Flash(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("--port", said)
 
+    def test_a_serial_port_is_for_the_serial_tool(self):
+        self.install("st-flash", "openocd", "dfu-util", "stm32flash")
+        for tool in ("st-flash", "openocd", "dfu-util"):
+            code, said, called = self.flash("--with", tool, "--port", "/dev/ttyUSB7")
+            self.assertEqual((code, called, said.count("\n")), (1, "", 1))
+            self.assertIn("--port /dev/ttyUSB7 is for stm32flash", said)
+        self.assertIn("/dev/ttyUSB7", self.flash("--with", "stm32flash", "--port", "/dev/ttyUSB7")[2])
+
     def test_nothing_is_run_dry(self):
         self.install("dfu-util")
         code, said, called = self.flash("--with", "dfu-util", "--dry-run")
@@ -117,6 +129,80 @@ class Flash(unittest.TestCase):
         code, said, _ = self.flash()
         self.assertEqual(code, 1)
         self.assertIn("dfu-util failed", said)
+
+
+class Dev(unittest.TestCase):
+    """tools/dev in a folder of its own, where its set-up, CMake and Python only write down how they were called."""
+
+    SETUP = """SKIPPED_TIERS=()
+QEMU_SYSTEM_ARM=qemu
+setup() { echo "setup $*" >>called; }
+"""
+    STUB = "#!/bin/sh\necho \"${0##*/} $*\" >>called\n"
+    IMAGE = ["setup demo target firmware", "cmake --preset stm32f405",
+             "cmake --build build/stm32f405 --target limber-stm32f405", "python3 -B tools/firmware/report.py"]
+    HOST = ["setup demo host target", "cmake --preset host", "cmake --build build/host",
+            "cmake --build build/host --target limber limber-sim"]
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        for name in ("tools", "bin", "build/stm32f405", "build/host"):
+            (self.folder / name).mkdir(parents=True)
+        shutil.copy(TOOLS / "dev", self.folder / "tools")
+        (self.folder / "CMakePresets.json").touch()
+        (self.folder / "tools" / "setup.sh").write_text(self.SETUP)
+        for name in ("bin", "elf"):  # of an earlier build
+            (self.folder / "build" / "stm32f405" / f"limber-stm32f405.{name}").touch()
+        self.stub("cmake")
+        self.stub("python3")
+
+    def stub(self, name, more=""):
+        path = self.folder / "bin" / name
+        path.write_text(self.STUB + more)
+        path.chmod(0o755)
+
+    def dev(self, *words):
+        """(exit code, stdout, what was called)"""
+        called = self.folder / "called"
+        called.unlink(missing_ok=True)
+        done = subprocess.run([self.folder / "tools" / "dev", *words], capture_output=True, text=True, check=False,
+                              env={"PATH": f"{self.folder}/bin:/usr/bin:/bin"}, timeout=30)
+        return done.returncode, done.stdout, called.read_text().splitlines() if called.exists() else []
+
+    def calls(self, expected, *words):
+        code, _, called = self.dev(*words)
+        self.assertEqual((code, len(called)), (0, len(expected)), called)
+        for line, start in zip(called, expected):
+            self.assertTrue(line.startswith(start), (line, start))
+
+    def test_what_is_flashed_or_booted_is_built_first(self):
+        self.calls([*self.IMAGE, "python3 -B tools/firmware/flash.py --dry-run"], "flash", "--dry-run")
+        image = [self.IMAGE[0], *self.IMAGE[2:]]  # configured before
+        self.calls([*image, *self.HOST, "python3 -B tools/firmware/qemu.py --qemu qemu --links 5"],
+                   "qemu", "--links", "5")
+
+    def test_but_not_an_image_of_ones_own(self):
+        self.calls(["python3 -B tools/firmware/flash.py --image mine.bin"], "flash", "--image", "mine.bin")
+        self.calls(["python3 -B tools/firmware/flash.py --image=mine.bin"], "flash", "--image=mine.bin")
+        self.calls([*self.HOST, "python3 -B tools/firmware/qemu.py --qemu qemu --elf mine.elf"],
+                   "qemu", "--elf", "mine.elf")
+
+    def test_nothing_is_flashed_or_booted_after_a_build_that_failed(self):
+        self.stub("cmake", 'test "$1" != --build\n')
+        for command in ("flash", "qemu"):
+            code, _, called = self.dev(command)
+            self.assertNotEqual(code, 0)
+            self.assertTrue(called[-1].startswith("cmake --build build/stm32f405"), called)
+
+    def test_help_sets_up_and_builds_nothing(self):
+        for command in ("flash", "qemu"):
+            for word in ("--help", "-h"):
+                self.calls([f"python3 -B tools/firmware/{command}.py {word}"], command, word)
+        code, said, called = self.dev("firmware", "--help")
+        self.assertEqual((code, called), (0, []))
+        self.assertIn("usage: tools/dev firmware", said)
 
 
 if __name__ == "__main__":

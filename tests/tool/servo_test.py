@@ -21,6 +21,8 @@ PING_ALL = bytes.fromhex("ff ff fd 00 fe 03 00 01 31 42")
 GOAL_1 = bytes.fromhex("ff ff fd 00 01 09 00 03 74 00 00 02 00 00 ca 89")
 DONE_1 = bytes.fromhex("ff ff fd 00 01 04 00 55 00 a1 0c")
 
+SERVO_PING, SERVO_SILENT, SERVO_BEYOND = 0x39, 22, 25  # PROTOCOL.md: a message and reasons to refuse it
+
 
 class ServoCase(ToolCase):
     def simulate(self, *arguments):
@@ -89,6 +91,22 @@ class Scan(ServoCase):
         out, err = scan.communicate(timeout=20)
         self.assertEqual((scan.returncode, err), (130, ""))
 
+    def test_ctrl_c_switches_the_supply_off(self):
+        fake = self.fake("--nack", SERVO_PING, "--reason", SERVO_SILENT)
+        self.environment["LIMBER_PORT"] = fake.port
+        scan = self.start("servo", "scan", "--baud", "all")
+        fake.wait_for("request SERVO_PING")
+        scan.send_signal(signal.SIGINT)
+        scan.communicate(timeout=20)
+        self.assertEqual(scan.returncode, 130)
+        self.assertEqual(fake.requests()[-1], "DISARM")
+
+    def test_an_id_that_is_no_channel_is_not_there(self):
+        fake = self.fake("--nack", SERVO_PING, "--reason", SERVO_BEYOND)
+        self.environment["LIMBER_PORT"] = fake.port
+        self.fails(4, ["servo", "scan", "--last", "20"], "no servo answers at this baud rate")
+        self.assertEqual(fake.requests(), ["SERVO_PING"] * 21)
+
     def test_echo_on_the_wire(self):
         self.device("--echo", "--links", "1")
         self.assertEqual(self.ids("--last", "3"), [1, 2])
@@ -109,7 +127,7 @@ class SetUp(ServoCase):
 
     def test_what_is_refused(self):
         self.device()
-        self.fails(4, ["servo", "id", "3", "4"], "servo 3 is not free")
+        self.fails(4, ["servo", "id", "3", "4"], "servo 3 cannot have that id")
         self.fails(4, ["servo", "id", "30", "40"], "servo 30 does not answer")
         self.fails(4, ["servo", "baud", "3", "123456"], "servo 3 cannot be driven at that rate")
         self.assertEqual(self.ids("--last", "4"), [1, 2, 3, 4])
@@ -120,7 +138,34 @@ class SetUp(ServoCase):
                           ["test", "1", "--baud", "all"], ["scan", "--last", "253"], ["scan", "3"],
                           ["scan", "--baud", "fast"], ["scan", "--whom"]):
             self.fails(2, ["servo", *arguments])
-        self.assertIn("limber servo id 1 7 --baud 57600", self.good("servo", "--help"))
+        for arguments in (["id", "1.5", "9"], ["id", "1", "9.9"], ["baud", "2", "1000000.9"], ["test", "0.5"],
+                          ["test", "1", "--baud", "57600.5"], ["baud", "1", "57600", "--from-baud", "57600.5"],
+                          ["scan", "--first", "1.5"], ["scan", "--last", "1.5"]):
+            self.fails(2, ["servo", *arguments], "must be a whole number")
+        help_text = self.good("servo", "--help")
+        for words in ("limber servo id 1 7 --baud 57600", "ALL servos on, until 10 s after", "Ctrl-C, or limber disarm",
+                      "PWM channels cannot tell whether a servo is there", "jumps to the middle of its travel first"):
+            self.assertIn(words, help_text)
+
+    def test_options_that_are_not_meant_for_it(self):
+        self.fails(2, ["servo", "test", "1", "--from-baud", "57600"], "--from-baud is for baud only")
+        self.fails(2, ["servo", "id", "1", "2", "--first", "0"], "--first is for scan only")
+        self.fails(2, ["servo", "baud", "1", "57600", "--last", "252"], "--last is for scan only")
+        self.fails(2, ["servo", "scan", "--turn", "0.2"], "--turn is for test only")
+        self.fails(2, ["servo", "baud", "1", "57600", "--baud", "9600", "--from-baud", "9600"], "give one of them")
+
+    def test_ctrl_c_ends_a_test(self):
+        self.device()
+        for arguments in (["test", "1"], ["id", "1", "9"]):
+            tool = self.start("servo", *arguments)
+            time.sleep(0.3)  # of the 0.5 s that the servos boot, before anything else
+            tool.send_signal(signal.SIGINT)
+            out, err = tool.communicate(timeout=20)
+            self.assertEqual((tool.returncode, out), (130, ""))
+            self.assertRegex(err, r"\Alimber: interrupted: servo 1 was stopped[^\n]*\n\Z")
+            # one still under way would keep the device busy
+            self.assertEqual(self.ids("--first", "1", "--last", "1"), [1])
+            self.good("disarm")  # so that they boot again
 
     def test_only_while_disarmed(self):
         self.device()
@@ -138,7 +183,8 @@ class SetUp(ServoCase):
         self.device("--servos", "pwm")
         self.good("servo", "test", "8")
         self.fails(4, ["servo", "test", "9"], "channel")
-        self.fails(4, ["servo", "scan"], "servo 0", "PWM channel")
+        self.assertEqual(self.ids(), [1, 2, 3, 4, 5, 6, 7, 8])
+        self.assertEqual(self.ids("--baud", "all"), [1, 2, 3, 4, 5, 6, 7, 8])  # once: they know no rates
         self.fails(4, ["servo", "id", "1", "2"])
 
 

@@ -100,7 +100,7 @@ def choose(tool, port):
     """(tool, detail), or a list of sentences that tell what to do."""
     found = ways(port)
     if tool:
-        detail = next((d for t, d, _ in found if t == tool), port)
+        detail = next((d for t, d, _ in found if t == tool), None)
         if tool == "stm32flash" and not detail:
             return ["which serial port? --port /dev/ttyUSB0", f"there are: {' '.join(serial_ports()) or 'none'}"]
         return tool, detail
@@ -119,10 +119,12 @@ def main(words=None):
     parser = argparse.ArgumentParser(prog="tools/dev flash", description=__doc__, epilog=BOOT_LOADER,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--image", default="build/stm32f405/limber-stm32f405.bin")
-    parser.add_argument("--port", help="serial port whose other end is PA9 and PA10")
+    parser.add_argument("--port", help="serial port whose other end is PA9 and PA10; for stm32flash")
     parser.add_argument("--with", dest="tool", choices=TOOLS, help="this tool, connected or not")
     parser.add_argument("--dry-run", action="store_true", help="only say what would be run")
     choices = parser.parse_args(words)
+    if choices.port and choices.tool not in (None, "stm32flash"):
+        return give_up(f"--port {choices.port} is for stm32flash; {choices.tool} does not use a serial port")
     image = pathlib.Path(choices.image)
     if not image.exists():
         return give_up(f"no {image}: tools/dev firmware makes it")

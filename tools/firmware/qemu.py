@@ -22,12 +22,32 @@ BUILD = pathlib.Path(__file__).resolve().parents[2] / "build"
 SERVO_BAUD = 4000000
 GOALS_HZ = 25  # so that a hundred servos' fit what the line can carry
 SERVOS_MAX = 128
+LINKS_MAX = 64
 
 
 def free_port():
     with socket.socket() as s:
         s.bind(("127.0.0.1", 0))
         return s.getsockname()[1]
+
+
+def why_not_listen(port):
+    """What keeps one from listening there, in words; None if nothing does."""
+    with socket.socket() as s:
+        s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as QEMU does: ended connections do not count
+        try:
+            s.bind(("127.0.0.1", port))
+        except OSError as why:
+            return why.strerror
+    return None
+
+
+def whole(least, most):
+    def convert(text):
+        if not (text.isdecimal() and least <= int(text) <= most):
+            raise argparse.ArgumentTypeError(f"{text}: must be a whole number from {least} to {most}")
+        return int(text)
+    return convert
 
 
 def give_up(text):
@@ -37,8 +57,8 @@ def give_up(text):
 
 def start_servos(sim, servos_n):
     """(process, its port)"""
-    process = subprocess.Popen([sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(servos_n), "--baud", str(SERVO_BAUD)],
-                               stdout=subprocess.PIPE, text=True)
+    command = [sim, "servos", "--tcp", "127.0.0.1:0", "--count", str(servos_n), "--baud", str(SERVO_BAUD)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     told = re.search(r"127\.0\.0\.1:(\d+)", process.stdout.readline())
     return process, told and int(told[1])
 
@@ -85,9 +105,9 @@ def serve(choices, children):
 def main():
     parser = argparse.ArgumentParser(prog="tools/dev qemu", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--links", type=int, help="links of the rod; with --servos at most 64")
+    parser.add_argument("--links", type=whole(1, LINKS_MAX), help=f"links of the rod, 1 to {LINKS_MAX}")
     parser.add_argument("--servos", action="store_true", help="smart servos on the bus, two a link")
-    parser.add_argument("--port", type=int, help="TCP port on 127.0.0.1 (any)")
+    parser.add_argument("--port", type=whole(1, 65535), help="TCP port on 127.0.0.1 (any)")
     parser.add_argument("--elf", type=pathlib.Path, default=BUILD / "stm32f405" / "limber-stm32f405.elf")
     parser.add_argument("--qemu", default="qemu-system-arm")
     parser.add_argument("--sim", default=BUILD / "host" / "limber-sim")
@@ -95,6 +115,8 @@ def main():
     choices = parser.parse_args()
     if not choices.elf.exists():
         return give_up(f"no {choices.elf}: tools/dev firmware makes it")
+    if choices.port and (why := why_not_listen(choices.port)):
+        return give_up(f"--port {choices.port}: {why}; choose another, or none")
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     children = []
     try:

@@ -4,6 +4,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "interrupt.h"
+
+enum { WAIT_MAX_US = 50000 }; /* so that an interrupt between two waits is not slept over */
+
 void servo_ask_error_text(uint8_t hardware_error, char *text, size_t room)
 {
     /* ROBOTIS e-Manual, X series, Hardware Error Status(70) */
@@ -57,7 +61,34 @@ int servo_ask_complain(const session *s, int id)
     return limber_refuse("%s", text);
 }
 
+request_state servo_ask_try(session *s, const message *request)
+{
+    session_ask(s, request);
+    while (s->request == REQUEST_WAITING && !interrupt_came()) {
+        (void)session_step(s, limber_now_us() + WAIT_MAX_US, -1);
+    }
+    return s->request;
+}
+
+int servo_ask_stop(session *s)
+{
+    const message disarm = {.type = MESSAGE_DISARM};
+    const int result = session_request(s, &disarm);
+    return result == SIM_OK ? LIMBER_INTERRUPTED : result;
+}
+
 int servo_ask(session *s, const message *request, int id)
 {
-    return session_try(s, request) == REQUEST_DONE ? SIM_OK : servo_ask_complain(s, id);
+    const request_state state = servo_ask_try(s, request);
+    if (state == REQUEST_DONE) {
+        return SIM_OK;
+    }
+    if (state != REQUEST_WAITING) {
+        return servo_ask_complain(s, id);
+    }
+    const int result = servo_ask_stop(s);
+    if (result == LIMBER_INTERRUPTED) {
+        limber_note("interrupted: servo %d was stopped, and the servos' supply is off", id);
+    }
+    return result;
 }

@@ -9,8 +9,16 @@
 
 enum { SERVO_ID_LAST = 252 };
 
-/* SIM_OK, or LIMBER_DEVICE after complaining; id: the servo it is about. */
+/* SIM_OK, or LIMBER_DEVICE after complaining; id: the servo it is about. LIMBER_INTERRUPTED after servo_ask_stop and
+ * saying so, if an interrupt came while it waited (interrupt.h; only where interrupts are caught). */
 int servo_ask(session *s, const message *request, int id);
+
+/* As session_try; but an interrupt ends the wait: REQUEST_WAITING then, and it is time for servo_ask_stop. */
+request_state servo_ask_try(session *s, const message *request);
+
+/* DISARM, which ends what a servo is doing and takes all servos' supply, whatever was asked before.
+ * LIMBER_INTERRUPTED, or LIMBER_DEVICE after complaining that it could not be done. */
+int servo_ask_stop(session *s);
 
 /* Whether the last request was refused because of the servo, and not of the device. */
 bool servo_ask_is_about_servo(const session *s);

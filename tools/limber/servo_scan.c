@@ -3,7 +3,6 @@
 
 #include <stdio.h>
 
-#include "interrupt.h"
 #include "progress.h"
 #include "servo_ask.h"
 #include "texts.h"
@@ -16,7 +15,9 @@ typedef struct {
     session *s;
     const servo_scan_options *options;
     int found_n;
-    cJSON *rows; /* NULL: for people */
+    bool rate_skipped; /* the board cannot make the one being scanned at */
+    bool channels;     /* what was found are PWM channels, which know no rates */
+    cJSON *rows;       /* NULL: for people */
 } scan;
 
 static void print_row(const scan *c, const message_servo_info *info)
@@ -54,38 +55,64 @@ static void show(scan *c, const message_servo_info *info)
     } else {
         print_row(c, info);
     }
+    c->channels = info->baud == 0;
     c->found_n++;
 }
 
-/* One id: there, silent, or worth a line. */
-static int look_for(scan *c, uint32_t baud, int id)
+/* SERVO_BEYOND: of a rate that the board cannot make, which comes as the value, or of an id that is no PWM channel,
+ * and then nobody is there. A rate that the user did not choose is passed over. */
+static int beyond(scan *c, uint32_t baud, int id)
 {
-    const message ask = {.type = MESSAGE_SERVO_PING,
-                         .servo_ping = {.id = (uint8_t)id, .baud = baud}};
-    if (session_try(c->s, &ask) == REQUEST_DONE) {
-        show(c, &c->s->answer.servo_info);
-        return SIM_OK;
-    }
-    const uint8_t reason = c->s->answer.nack.reason;
-    if (!servo_ask_is_about_servo(c->s) || reason == REASON_SERVO_BEYOND) {
+    const bool is_rate = c->s->answer.nack.value > 0.0f;
+    if (is_rate && !c->options->all_bauds) {
         return servo_ask_complain(c->s, id);
     }
+    if (is_rate) {
+        c->rate_skipped = true;
+        limber_note("%u baud: skipped, the board cannot make that rate", baud);
+    }
+    return SIM_OK;
+}
+
+/* One id that has not answered as it should: silent, beyond what the device can do, or worth a line. */
+static int not_found(scan *c, uint32_t baud, int id)
+{
+    const uint8_t reason = c->s->answer.nack.reason;
+    port_why text;
+    if (!servo_ask_is_about_servo(c->s)) {
+        return servo_ask_complain(c->s, id);
+    }
+    if (reason == REASON_SERVO_BEYOND) {
+        return beyond(c, baud, id);
+    }
     if (reason != REASON_SERVO_SILENT) {
-        port_why text;
         servo_ask_describe(c->s, id, text);
         limber_note("%s", text);
     }
     return SIM_OK;
 }
 
+static int look_for(scan *c, uint32_t baud, int id)
+{
+    const message ask = {.type = MESSAGE_SERVO_PING,
+                         .servo_ping = {.id = (uint8_t)id, .baud = baud}};
+    switch (servo_ask_try(c->s, &ask)) {
+    case REQUEST_WAITING:
+        return servo_ask_stop(c->s);
+    case REQUEST_DONE:
+        show(c, &c->s->answer.servo_info);
+        return SIM_OK;
+    default:
+        return not_found(c, baud, id);
+    }
+}
+
 static int scan_at(scan *c, uint32_t baud)
 {
     const servo_scan_options *o = c->options;
     int result = SIM_OK;
-    for (int id = o->first_id; result == SIM_OK && id <= o->last_id; id++) {
-        if (interrupt_came()) {
-            return LIMBER_INTERRUPTED;
-        }
+    c->rate_skipped = false;
+    for (int id = o->first_id; result == SIM_OK && !c->rate_skipped && id <= o->last_id; id++) {
         if (baud == 0) {
             progress_show("id %d of %d, %d found", id, o->last_id, c->found_n);
         } else {
@@ -100,7 +127,7 @@ static int scan_at(scan *c, uint32_t baud)
 static int scan_all_bauds(scan *c)
 {
     int result = SIM_OK;
-    for (int i = 0; result == SIM_OK && i < BAUDS_N; i++) {
+    for (int i = 0; result == SIM_OK && !c->channels && i < BAUDS_N; i++) {
         result = scan_at(c, BAUDS[i]);
     }
     return result;
@@ -109,7 +136,6 @@ static int scan_all_bauds(scan *c)
 int servo_scan(session *s, const servo_scan_options *options)
 {
     scan c = {.s = s, .options = options, .rows = options->json ? cJSON_CreateArray() : NULL};
-    interrupt_catch();
     const int result = options->all_bauds ? scan_all_bauds(&c) : scan_at(&c, options->baud);
     if (c.rows != NULL && (result == SIM_OK || result == LIMBER_INTERRUPTED)) {
         texts_print_json(c.rows);

@@ -14,7 +14,8 @@ typedef struct {
 } servo_scan_options;
 
 /* Prints them, and on a terminal how far it is. SIM_OK; LIMBER_DEVICE after complaining, also if there are none;
- * LIMBER_INTERRUPTED with those that had been found by then. */
+ * LIMBER_INTERRUPTED with those that had been found by then, after taking the servos' supply (servo_ask_stop).
+ * all_bauds passes over rates that the board cannot make, with a note for each. */
 int servo_scan(session *s, const servo_scan_options *options);
 
 #endif
