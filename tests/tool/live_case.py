@@ -14,6 +14,7 @@ import time
 import tty
 
 import tool_case
+from frames import Frames
 from tool_case import ToolCase
 
 SIM = None
@@ -22,19 +23,6 @@ POSE, ANGLES, NODES = 0x10, 0x11, 0x12
 
 def float32(value):
     return struct.unpack("<f", struct.pack("<f", value))[0]
-
-
-def cobs_decoded(data):
-    out, at = bytearray(), 0
-    while at < len(data):
-        code = data[at]
-        if code == 0:
-            return b""
-        out += data[at + 1:at + code]
-        at += code
-        if code < 255 and at < len(data):
-            out.append(0)
-    return bytes(out)
 
 
 class Tap:
@@ -59,7 +47,7 @@ class Tap:
             data = data[os.write(fd, data):]
 
     def _run(self):
-        rest = {self.master: b"", self.device: b""}
+        frames = {self.master: Frames(), self.device: Frames()}
         while not self.stop:
             for fd in select.select([self.master, self.device], [], [], 0.1)[0]:
                 try:
@@ -67,20 +55,16 @@ class Tap:
                 except OSError:
                     return  # the device has been killed
                 self._pass_on(self.device if fd == self.master else self.master, data)
-                *frames, rest[fd] = (rest[fd] + data).split(b"\0")
-                for one in frames:
-                    self._take(cobs_decoded(one))
+                for kind, payload in frames[fd].take(data):
+                    self._take(kind, payload)
 
-    def _take(self, frame):
-        if len(frame) < 12:
-            return
-        payload = frame[8:-4]
-        if frame[0] == POSE:
+    def _take(self, kind, payload):
+        if kind == POSE:
             self.poses.append(list(struct.unpack_from("<7f", payload)) + [struct.unpack_from("<H", payload, 28)[0]])
-        elif frame[0] == ANGLES:
+        elif kind == ANGLES:
             self.angles.append((struct.unpack_from("<I", payload)[0], payload[10],
                                 struct.unpack(f"<{(len(payload) - 12) // 2}h", payload[12:])))
-        elif frame[0] == NODES:
+        elif kind == NODES:
             tick, first, nodes_n = struct.unpack_from("<IHH", payload)
             self.nodes.append((tick, first, nodes_n, struct.unpack(f"<{(len(payload) - 8) // 4}f", payload[8:])))
 
