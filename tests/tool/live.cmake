@@ -20,10 +20,11 @@ set(live_tools $<TARGET_FILE:limber> $<TARGET_FILE:fake_device> $<TARGET_FILE:se
 foreach(part live live_faults)
   add_test(NAME tool.${part} COMMAND ${PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/${part}_test.py ${live_tools})
 endforeach()
-add_test(NAME tool.live_peers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/live_peers.sh ${CMAKE_BINARY_DIR}/tools/live
+# a minute in real time, and packages from outside
+add_test(NAME slow.live_peers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/live_peers.sh ${CMAKE_BINARY_DIR}/tools/live
   ${PYTHON} ${live_tools})
 add_test(NAME slow.live COMMAND ${PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/live_soak.py ${live_tools} 600)
-set_tests_properties(tool.live tool.live_faults tool.live_peers PROPERTIES LABELS e2e TIMEOUT 300 PROCESSORS 2)
-set_tests_properties(slow.live PROPERTIES LABELS slow TIMEOUT 1200 PROCESSORS 2)
-set_tests_properties(tool.live tool.live_faults tool.live_peers slow.live PROPERTIES SKIP_RETURN_CODE 77
+set_tests_properties(tool.live tool.live_faults PROPERTIES LABELS e2e TIMEOUT 300 PROCESSORS 2)
+set_tests_properties(slow.live slow.live_peers PROPERTIES LABELS slow TIMEOUT 1200 PROCESSORS 2)
+set_tests_properties(tool.live tool.live_faults slow.live slow.live_peers PROPERTIES SKIP_RETURN_CODE 77
   ENVIRONMENT PYTHONDONTWRITEBYTECODE=1)
