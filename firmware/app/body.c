@@ -14,22 +14,13 @@ static void lay_servos(body *b, const servo_setup *setup)
     servo_blend_none(&b->blend);
 }
 
-static bool refuse_rod(rod_error error, const rod_refusal *refusal, params_refusal *why)
-{
-    *why = (params_refusal){
-        REASON_COMBINATION,   refusal->joint, refusal->value,
-        refusal->min,         refusal->max,   refusal->field != NULL ? refusal->field->name : "",
-        rod_error_text(error)};
-    return false;
-}
-
 bool body_init(body *b, const params_set *set, params_refusal *why)
 {
     memset(b, 0, sizeof *b);
     rod_refusal refusal;
     const rod_error error = rod_init(&b->rod, &set->rod, &refusal);
     if (error != ROD_OK) {
-        return refuse_rod(error, &refusal, why);
+        return params_refuse_rod(error, &refusal, why);
     }
     servo_setup setup;
     if (!servo_setup_make(&setup, set, why)) {
@@ -51,7 +42,7 @@ bool body_change(body *b, const params_set *set, bool all_new, params_refusal *w
     }
     const rod_error error = rod_set_params(&b->rod, &set->rod, &refusal);
     if (error != ROD_OK) {
-        return refuse_rod(error, &refusal, why);
+        return params_refuse_rod(error, &refusal, why);
     }
     b->blend_s = set->device.blend_s;
     if (all_new) {

@@ -96,7 +96,7 @@ static void commit(device *d, uint16_t request_id, uint8_t type)
         answers_refuse_for(d, request_id, type, REASON_BUSY, "the servos are being talked to");
         return;
     }
-    if (!fits_the_line(d, &why) || !params_check(&d->params, all_allowed, &why) ||
+    if (!fits_the_line(d, &why) || !params_check_changes(&d->params, all_allowed, &why) ||
         !device_apply_params(d, &d->params.staged, all_allowed, &why)) {
         answers_refuse(d, request_id, type, &why);
         return;

@@ -129,7 +129,7 @@ void params_init(params *p)
     set_defaults(&p->in_force, 1e-3f);
     p->staged = p->in_force;
     p->generation = 0;
-    p->is_staged = false;
+    p->is_staged = p->device_staged = false;
 }
 
 static bool refuse(params_refusal *why, params_refusal what)
@@ -191,13 +191,14 @@ bool params_stage(params *p, const char *name, int first, const float *values, i
         params_put(&p->staged, index, first + i, values[all ? 0 : i]);
     }
     p->is_staged = true;
+    p->device_staged = p->device_staged || index >= ROD_FIELDS_N;
     return true;
 }
 
 void params_stage_defaults(params *p)
 {
     set_defaults(&p->staged, p->in_force.rod.tick_s);
-    p->is_staged = true;
+    p->is_staged = p->device_staged = true;
 }
 
 bool params_stage_preset(params *p, const char *name, params_refusal *why)
@@ -217,7 +218,7 @@ bool params_stage_preset(params *p, const char *name, params_refusal *why)
 void params_unstage(params *p)
 {
     p->staged = p->in_force;
-    p->is_staged = false;
+    p->is_staged = p->device_staged = false;
 }
 
 /* The first entry in which two sets differ, or -1. */
@@ -233,6 +234,15 @@ static int difference(const params *p, int index, int entries_n)
     return -1;
 }
 
+bool params_refuse_rod(rod_error error, const rod_refusal *refusal, params_refusal *why)
+{
+    const bool single = error > ROD_E_OVERDAMPED;
+    return refuse(why, (params_refusal){single ? REASON_BOUNDS : REASON_COMBINATION, refusal->joint,
+                                        refusal->value, refusal->min, refusal->max,
+                                        refusal->field != NULL ? refusal->field->name : "",
+                                        rod_error_text(error)});
+}
+
 static bool check_rod(const params_set *set, params_refusal *why)
 {
     rod_refusal refusal;
@@ -243,19 +253,13 @@ static bool check_rod(const params_set *set, params_refusal *why)
         error = contour_prepare(&trial, &set->rod, &row_n);
         refusal = (rod_refusal){error, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
     }
-    if (error == ROD_OK) {
-        return true;
-    }
-    const bool single = error > ROD_E_OVERDAMPED;
-    return refuse(why, (params_refusal){single ? REASON_BOUNDS : REASON_COMBINATION, refusal.joint,
-                                        refusal.value, refusal.min, refusal.max,
-                                        refusal.field != NULL ? refusal.field->name : "",
-                                        rod_error_text(error)});
+    return error == ROD_OK || params_refuse_rod(error, &refusal, why);
 }
 
-bool params_check(const params *p, bool all_allowed, params_refusal *why)
+bool params_check_changes(const params *p, bool all_allowed, params_refusal *why)
 {
-    for (int i = 0; i < params_count() && !all_allowed; i++) {
+    const int changed_n = p->device_staged ? params_count() : ROD_FIELDS_N;
+    for (int i = 0; i < changed_n && !all_allowed; i++) {
         params_info info;
         (void)params_describe(p->staged.rod.links_n, i, &info);
         const int entry = info.flags & PARAM_DISARMED_ONLY ? difference(p, i, info.entries_n) : -1;
@@ -273,19 +277,19 @@ bool params_check(const params *p, bool all_allowed, params_refusal *why)
                                                 "servo_sign", "must be 1 or -1"});
         }
     }
-    return check_rod(&p->staged, why);
+    return true;
 }
 
 void params_take(params *p)
 {
     p->in_force = p->staged;
-    p->is_staged = false;
+    p->is_staged = p->device_staged = false;
     p->generation++;
 }
 
 bool params_commit(params *p, bool all_allowed, params_refusal *why)
 {
-    if (!params_check(p, all_allowed, why)) {
+    if (!params_check_changes(p, all_allowed, why) || !check_rod(&p->staged, why)) {
         return false;
     }
     params_take(p);

@@ -46,6 +46,7 @@ typedef struct {
     params_set in_force, staged;
     uint32_t generation; /* counts commits */
     bool is_staged;      /* something has been set since the last commit */
+    bool device_staged;  /* some of it the device's own, not the rod's */
 } params;
 
 /* Defaults, in force and staged. */
@@ -74,13 +75,17 @@ bool params_stage_preset(params *p, const char *name, params_refusal *why);
 /* Forget what is staged. */
 void params_unstage(params *p);
 
-/* Would the staged set be taken? all_allowed: fields that may change only while disarmed may. */
-bool params_check(const params *p, bool all_allowed, params_refusal *why);
+/* May what is staged differ from what is in force as it does? all_allowed: fields that may change only while
+ * disarmed may. The rod is not tried: who gives it the set (rod_set_params) hears that from it. */
+bool params_check_changes(const params *p, bool all_allowed, params_refusal *why);
+
+/* The rod's refusal as one of a parameter; returns false. */
+bool params_refuse_rod(rod_error error, const rod_refusal *refusal, params_refusal *why);
 
 /* The staged set, checked before, is in force from here on. */
 void params_take(params *p);
 
-/* Check, and take if that agrees. */
+/* Check the changes and the rod, and take the set if both are right. */
 bool params_commit(params *p, bool all_allowed, params_refusal *why);
 
 #endif

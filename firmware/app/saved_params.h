@@ -16,7 +16,7 @@ uint32_t saved_params_bytes_max(void);
 /* Returns the bytes written; room >= saved_params_bytes_max(). */
 uint32_t saved_params_pack(const params_set *set, uint8_t *bytes);
 
-/* Values go into *set as they are; params_check judges them. */
+/* Values go into *set as they are; params_commit judges them. */
 void saved_params_unpack(const uint8_t *bytes, uint32_t bytes_n, params_set *set);
 
 #endif

@@ -23,6 +23,7 @@ PARTS = [  # name in the counts, what it is
     ("angles_reply", "ANGLES packed, framed and queued"),
     ("tick", "**the whole tick**, all of these in it"),
     ("tick_full", "the same, with HEARTBEAT and STATS"),
+    ("tick_preset", "the whole tick, and the rod becomes another one in it"),
 ]
 INTERRUPTS = {
     "interrupt_byte_in": "a byte has come in, on the line or the bus",

@@ -148,7 +148,7 @@ void count_board_pass(void)
     timebase_interrupt(&counted.clock);
 }
 
-static void say(const message *m)
+void count_board_say(const message *m)
 {
     uint8_t bytes[FRAME_WIRE_MAX];
     arrive(&counted.line, bytes, messages_encode(m, 1, ++seq, w.now_us, bytes, sizeof bytes));
@@ -167,7 +167,7 @@ void count_board_say_pose(void)
     const rod_pose hand = count_board_hand();
     const vec3 p = hand.position_m;
     const quat q = hand.orientation;
-    say(&(message){
+    count_board_say(&(message){
         .type = MESSAGE_POSE,
         .pose = {.position_m = {p.x, p.y, p.z}, .quaternion_xyzw = {q.x, q.y, q.z, q.w}}});
 }
@@ -235,12 +235,13 @@ bool count_board_follow(int links_n)
         printf("parameters refused: %s\n", why.text);
         return false;
     }
-    say(&(message){.type = MESSAGE_HELLO,
+    count_board_say(
+        &(message){.type = MESSAGE_HELLO,
                    .hello = {.request_id = 1, .protocol_major = PROTOCOL_MAJOR, .pose_hz = 1e3f}});
     for (int i = 0; i < 400; i++) {
         tick_with_pose();
     }
-    say(&(message){.type = MESSAGE_ARM, .arm = {.request_id = 2}});
+    count_board_say(&(message){.type = MESSAGE_ARM, .arm = {.request_id = 2}});
     for (int i = 0; i < 6000 && counted.device.supervisor.state != SUPERVISOR_ACTIVE; i++) {
         tick_with_pose();
     }

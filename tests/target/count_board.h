@@ -26,6 +26,7 @@ bool count_board_follow(int links_n);
 void count_board_pass(void);
 
 rod_pose count_board_hand(void);
+void count_board_say(const message *m);
 void count_board_say_pose(void);
 uint32_t count_board_now_us(void);
 

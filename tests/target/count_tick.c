@@ -29,6 +29,28 @@ static void count_ticks(const char *name, int links_n, uint32_t telemetry_ticks)
     cost_tell(name, links_n);
 }
 
+/* Ticks in which the rod becomes another one: all of the parameters are checked, and the blend begins. */
+static void count_presets(int links_n)
+{
+    static const char *const NAMES[] = {"foil", "whip", "ribbon"};
+    const uint32_t refused = d->commands_refused;
+    for (int i = 0; i < TICKS_N / 10; i++) {
+        message m = {.type = MESSAGE_PRESET, .preset = {.request_id = (uint16_t)(1000 + i)}};
+        link_text(m.preset.name, sizeof m.preset.name, NAMES[i % 3]);
+        count_board_pass();
+        count_board_say_pose();
+        count_board_say(&m);
+        d->to_heartbeat_ticks = d->to_stats_ticks = NEVER;
+        cost_begin();
+        device_tick(d);
+        cost_end();
+    }
+    cost_tell("tick_preset", links_n);
+    if (d->commands_refused != refused) {
+        printf("presets were refused\n");
+    }
+}
+
 typedef enum { DECODE, POSE_INPUT, BLEND_LIMITS, SERVO_ENCODE, ANGLES_REPLY, PARTS_N } part;
 static const char *const PART_NAMES[PARTS_N] = {"decode", "pose_input", "blend_limits",
                                                 "servo_encode", "angles_reply"};
@@ -134,6 +156,7 @@ int main(void)
         }
         count_ticks("tick", n, NEVER);
         count_ticks("tick_full", n, 0);
+        count_presets(n);
         if (d->supervisor.state != SUPERVISOR_ACTIVE) {
             printf("no longer ACTIVE but %d\n", (int)d->supervisor.state);
             return 1;
