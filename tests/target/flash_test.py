@@ -155,10 +155,10 @@ setup() { echo "setup $*" >>called; }
         (self.folder / "tools" / "setup.sh").write_text(self.SETUP)
         for name in ("bin", "elf"):  # of an earlier build
             (self.folder / "build" / "stm32f405" / f"limber-stm32f405.{name}").touch()
-        self.stub("cmake")
-        self.stub("python3")
+        self.stand_in("cmake")
+        self.stand_in("python3")
 
-    def stub(self, name, more=""):
+    def stand_in(self, name, more=""):
         path = self.folder / "bin" / name
         path.write_text(self.STUB + more)
         path.chmod(0o755)
@@ -190,7 +190,7 @@ setup() { echo "setup $*" >>called; }
                    "qemu", "--elf", "mine.elf")
 
     def test_nothing_is_flashed_or_booted_after_a_build_that_failed(self):
-        self.stub("cmake", 'test "$1" != --build\n')
+        self.stand_in("cmake", 'test "$1" != --build\n')
         for command in ("flash", "qemu"):
             code, _, called = self.dev(command)
             self.assertNotEqual(code, 0)

@@ -189,6 +189,16 @@ class LiveCase(ToolCase):
         process.listener.start()
         return process
 
+    def replace_device(self, process, device, at):
+        """Kills it, and starts another on the same link: (that one, where its last news ends)."""
+        device.kill()
+        device.wait()
+        self.rod.unlink()
+        at = self.wait_until(process, "lost the device", at)
+        device = self.simulator("--flash", "flash.bin")
+        at = self.wait_until(process, "the device is back", at)
+        return device, self.wait_until(process, "the device is ACTIVE again", at)
+
     def wait_until(self, process, words, after=0, seconds=20):
         """The index behind the first line on stderr, from `after` on, that has these words."""
         deadline = time.monotonic() + seconds

@@ -64,13 +64,7 @@ class Dropouts(LiveCase):
         time.sleep(2.5)
         at = 0
         for _ in range(2):
-            device.kill()
-            device.wait()
-            self.rod.unlink()
-            at = self.wait_until(process, "lost the device", at)
-            device = self.simulator("--flash", "flash.bin")
-            at = self.wait_until(process, "the device is back", at)
-            at = self.wait_until(process, "the device is ACTIVE again", at)
+            device, at = self.replace_device(process, device, at)
         told = self.end(process, code=1)  # what the dead devices had got nobody can know
         stop.set()
         feeder.join()
