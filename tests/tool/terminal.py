@@ -205,10 +205,17 @@ class Terminal:
     def text(self):
         return "\n".join(self.screen.lines())
 
+    def settle(self):
+        """Reads on until the program pauses: a busy machine delivers a picture in pieces."""
+        while select.select([self.master], [], [], 0.05)[0]:
+            self.read(0.0)
+
     def wait_for(self, pattern, seconds=10):
-        """The match on the whole screen."""
+        """The match on the whole screen, once the picture that has it is complete."""
         deadline = time.monotonic() + seconds
         while True:
+            if re.search(pattern, self.text()):
+                self.settle()
             found = re.search(pattern, self.text())
             if found:
                 return found
