@@ -24,7 +24,7 @@ typedef struct {
     rod_pose base;
 } capsule_tick;
 
-_Static_assert(sizeof(capsule_header) == 8 + 4 * (5 + 8 * ROD_MAX_LINKS), "no padding");
+_Static_assert(sizeof(capsule_header) == 8 + 4 * (6 + 9 * ROD_MAX_LINKS), "no padding");
 _Static_assert(sizeof(capsule_tick) == 32, "no padding");
 
 #endif

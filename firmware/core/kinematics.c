@@ -37,21 +37,33 @@ void kinematics_nodes(const rod_pose *base, const rod_joint *angles_rad, const f
     }
 }
 
-void kinematics_angles(const rod_pose *base, const vec3 *nodes_m, int links_n,
-                       rod_joint *angles_rad)
+/* A link of length 1 in its parent's axes to its angles, and to their sines and cosines. */
+static joint_trig angles_of(vec3 d, rod_joint angles_rad)
+{
+    const float level_squared = d.x * d.x + d.z * d.z;
+    joint_trig t;
+    if (level_squared < 1e-12f) {
+        t = (joint_trig){trig_sincos(angles_rad[ROD_THETA]), {d.y < 0.0f ? -1.0f : 1.0f, 0.0f}};
+    } else {
+        const float level = trig_sqrt(level_squared);
+        const float per_level = 1.0f / level;
+        t = (joint_trig){{d.x * per_level, d.z * per_level}, {d.y, level}};
+        angles_rad[ROD_THETA] = trig_atan2(d.x, d.z);
+    }
+    angles_rad[ROD_PHI] = trig_asin(d.y);
+    return t;
+}
+
+void kinematics_angles(const rod_pose *base, const vec3 *links, int links_n, rod_joint *angles_rad)
 {
     frame3 link = quat_frame(base->orientation);
     for (int i = 0; i < links_n; i++) {
-        const vec3 d = frame3_from_parent(&link, vec3_sub(nodes_m[i + 1], nodes_m[i]));
+        const vec3 d = frame3_from_parent(&link, links[i]);
         const float length_squared = vec3_dot(d, d);
-        if (length_squared > 0.0f) {
-            const float sideways_squared = d.x * d.x + d.z * d.z;
-            if (sideways_squared >= 1e-12f * length_squared) {
-                angles_rad[i][ROD_THETA] = trig_atan2(d.x, d.z);
-            }
-            angles_rad[i][ROD_PHI] = trig_asin(d.y / trig_sqrt(length_squared));
-        }
-        const joint_trig t = kinematics_trig(angles_rad[i]);
+        const joint_trig t =
+            length_squared > 0.0f
+                ? angles_of(vec3_scale(d, 1.0f / trig_sqrt(length_squared)), angles_rad[i])
+                : kinematics_trig(angles_rad[i]);
         link = kinematics_turn(&link, &t);
     }
 }

@@ -52,9 +52,9 @@ frame3 kinematics_turn(const frame3 *parent, const joint_trig *t);
 void kinematics_nodes(const rod_pose *base, const rod_joint *angles_rad, const float *length_m,
                       int links_n, vec3 *nodes_m);
 
-/* The inverse: angles from nodes 0 ... links_n. Where a link points along its parent's +-y, theta is
- * open: the value already in angles_rad is kept. A link of no length keeps both of its angles. */
-void kinematics_angles(const rod_pose *base, const vec3 *nodes_m, int links_n,
-                       rod_joint *angles_rad);
+/* The inverse: angles from the links as vectors of any length, from node to node. Where a link points along its
+ * parent's +-y, theta is open: the value already in angles_rad is kept. A link of no length keeps both
+ * of its angles. About 190 instructions a link. */
+void kinematics_angles(const rod_pose *base, const vec3 *links, int links_n, rod_joint *angles_rad);
 
 #endif

@@ -3,28 +3,50 @@
 
 #include <string.h>
 
-/* Takes the parameters over and refactors, or leaves the rod as it was. */
-static rod_error prepare(rod *r, const rod_params *params, rod_refusal *refusal)
+static bool is_elastic(const rod *r)
+{
+    return r->params.model == ROD_MODEL_ELASTIC;
+}
+
+/* A model made ready, before it takes its place. */
+typedef union {
+    contour contour;
+    elastic elastic;
+} prepared;
+
+static rod_error prepare(prepared *model, const rod_params *params, rod_refusal *refusal)
 {
     const rod_error error = rod_params_check(params, refusal);
     if (error != ROD_OK) {
         return error;
     }
     int row_n;
-    if (contour_prepare(&r->model, params, &row_n) != ROD_OK) {
-        if (refusal != NULL) {
-            *refusal = (rod_refusal){ROD_E_PIVOT, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
-        }
-        return ROD_E_PIVOT;
+    const rod_error pivot = params->model == ROD_MODEL_ELASTIC
+                                ? elastic_prepare(&model->elastic, params, &row_n)
+                                : contour_prepare(&model->contour, params, &row_n);
+    if (pivot != ROD_OK && refusal != NULL) {
+        *refusal = (rod_refusal){pivot, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
     }
+    return pivot;
+}
+
+static void put_in_place(rod *r, const prepared *model, const rod_params *params)
+{
     r->params = *params;
-    return ROD_OK;
+    if (is_elastic(r)) {
+        r->as.elastic.model = model->elastic;
+    } else {
+        r->as.contour.model = model->contour;
+    }
 }
 
 rod_error rod_init(rod *r, const rod_params *params, rod_refusal *refusal)
 {
-    const rod_error error = prepare(r, params, refusal);
+    prepared model;
+    const rod_error error = prepare(&model, params, refusal);
     if (error == ROD_OK) {
+        put_in_place(r, &model, params);
+        r->restored_n = 0;
         rod_set_force(r, NULL, NULL);
         rod_reset(r);
     }
@@ -44,40 +66,89 @@ static rod_motion stretch(const rod_motion *motion, float ratio)
                         vec3_scale(motion->shift_m, ratio)};
 }
 
+/* What both models have in common: where the joints are, and how they moved in the last tick. */
+typedef struct {
+    rod_joint angle_rad[ROD_MAX_LINKS], increment_rad[ROD_MAX_LINKS];
+} joints;
+
+/* Joints beyond the last are straight and at rest. */
+static void read_joints(const rod *r, joints *j)
+{
+    const size_t bytes = (size_t)r->params.links_n * sizeof(rod_joint);
+    memset(j, 0, sizeof *j);
+    memcpy(j->angle_rad, rod_angles(r), bytes);
+    if (is_elastic(r)) {
+        elastic_increments(&r->as.elastic.model, &r->base, &r->motion, &r->as.elastic.state,
+                           j->increment_rad);
+    } else {
+        memcpy(j->increment_rad, r->as.contour.state[r->as.contour.current].increment_rad, bytes);
+    }
+}
+
+static void lay_joints(rod *r, const joints *j)
+{
+    if (is_elastic(r)) {
+        elastic_lay(&r->as.elastic.model, &r->base, &r->motion, (const rod_joint *)j->angle_rad,
+                    (const rod_joint *)j->increment_rad, &r->as.elastic.state);
+        return;
+    }
+    const size_t bytes = (size_t)r->params.links_n * sizeof(rod_joint);
+    memset(r->as.contour.state, 0, sizeof r->as.contour.state);
+    r->as.contour.current = 0;
+    memcpy(r->as.contour.state[0].angle_rad, j->angle_rad, bytes);
+    memcpy(r->as.contour.state[0].increment_rad, j->increment_rad, bytes);
+}
+
+static bool differs(float a, float b)
+{
+    return a < b || a > b;
+}
+
+/* The same links at the same tick: a state of the elastic model then means the same. */
+static bool is_same_shape(const rod_params *a, const rod_params *b)
+{
+    bool same = a->links_n == b->links_n && !differs(a->tick_s, b->tick_s);
+    for (int i = 0; same && i < a->links_n; i++) {
+        same = !differs(a->length_m[i], b->length_m[i]);
+    }
+    return same;
+}
+
 rod_error rod_set_params(rod *r, const rod_params *params, rod_refusal *refusal)
 {
-    const float old_tick_s = r->params.tick_s;
-    const rod_error error = prepare(r, params, refusal);
+    prepared model;
+    const rod_error error = prepare(&model, params, refusal);
     if (error != ROD_OK) {
         return error;
     }
-    contour_state *state = &r->state[r->current];
-    for (int i = params->links_n; i <= ROD_MAX_LINKS; i++) {
-        for (int axis = 0; axis < 2; axis++) {
-            state->angle_rad[i][axis] = state->increment_rad[i][axis] = 0.0f;
-        }
+    if (is_elastic(r) && params->model == ROD_MODEL_ELASTIC && is_same_shape(&r->params, params)) {
+        put_in_place(r, &model, params);
+        return ROD_OK;
     }
-    /* the other state keeps its rows beyond the last one at zero as well */
-    r->state[1 - r->current] = *state;
-
-    if (old_tick_s < params->tick_s || old_tick_s > params->tick_s) {
-        const float ratio = params->tick_s / old_tick_s;
+    joints j;
+    read_joints(r, &j);
+    if (differs(params->tick_s, r->params.tick_s)) {
+        const float ratio = params->tick_s / r->params.tick_s;
         for (int i = 0; i < params->links_n; i++) {
             for (int axis = 0; axis < 2; axis++) {
-                state->increment_rad[i][axis] *= ratio;
+                j.increment_rad[i][axis] *= ratio;
             }
         }
         r->motion = stretch(&r->motion, ratio);
     }
+    put_in_place(r, &model, params);
+    lay_joints(r, &j);
     return ROD_OK;
 }
 
 void rod_reset(rod *r)
 {
-    memset(r->state, 0, sizeof r->state);
-    r->current = r->swept = 0;
+    static const joints STRAIGHT_AT_REST;
+    r->swept = 0;
     r->started = false;
+    r->base = (rod_pose){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
     r->motion = NO_MOTION;
+    lay_joints(r, &STRAIGHT_AT_REST);
 }
 
 void rod_set_force(rod *r, rod_force_fn force, void *context)
@@ -96,16 +167,33 @@ static bool is_pose(const rod_pose *pose)
            trig_abs(norm_squared - 1.0f) <= 2e-3f;
 }
 
-/* Asks the force function and turns its answer into torques. Its own frame, for the nodes' sake: a
- * rod without external forces does not pay their stack. */
+static void ask_force(const rod *r, vec3 *nodes_m, vec3 *forces_newton)
+{
+    const int nodes_n = rod_nodes(r, nodes_m);
+    memset(forces_newton, 0, (size_t)nodes_n * sizeof *forces_newton);
+    r->force(nodes_m, nodes_n, forces_newton, r->force_context);
+}
+
+/* Not inlined, like what asks for forces: a rod without external ones does not pay their stack. */
+static __attribute__((noinline)) rod_error external_forces(const rod *r, vec3 *forces_newton)
+{
+    vec3 nodes_m[ROD_MAX_LINKS + 1];
+    ask_force(r, nodes_m, forces_newton);
+    for (int i = 0; i <= r->params.links_n; i++) {
+        const vec3 f = forces_newton[i];
+        if (!(trig_abs(f.x) + trig_abs(f.y) + trig_abs(f.z) <= 1e9f)) {
+            return ROD_E_FORCE;
+        }
+    }
+    return ROD_OK;
+}
+
 static __attribute__((noinline)) rod_error external_torques(const rod *r, rod_joint *torque_nm)
 {
-    const rod_joint *angles = rod_angles(r);
     vec3 nodes_m[ROD_MAX_LINKS + 1], forces_newton[ROD_MAX_LINKS + 1];
-    const int nodes_n = rod_nodes(r, nodes_m);
-    memset(forces_newton, 0, sizeof forces_newton);
-    r->force(nodes_m, nodes_n, forces_newton, r->force_context);
-    contour_torques(&r->model, angles, &r->base, nodes_m, forces_newton, torque_nm);
+    ask_force(r, nodes_m, forces_newton);
+    contour_torques(&r->as.contour.model, rod_angles(r), &r->base, nodes_m, forces_newton,
+                    torque_nm);
     for (int i = 0; i < r->params.links_n; i++) {
         for (int axis = 0; axis < 2; axis++) {
             if (!(trig_abs(torque_nm[i][axis]) <= 1e9f)) {
@@ -116,29 +204,80 @@ static __attribute__((noinline)) rod_error external_torques(const rod *r, rod_jo
     return ROD_OK;
 }
 
-static __attribute__((noinline)) rod_error step_with_force(rod *r, const rod_motion *now)
+static rod_error step_contour(rod *r, const rod_motion *now, const rod_joint *torque_nm)
+{
+    const int current = r->as.contour.current;
+    contour_state *state = r->as.contour.state;
+    const rod_error error = contour_step(&r->as.contour.model, &state[current], &state[1 - current],
+                                         &r->motion, now, torque_nm);
+    if (error == ROD_OK) {
+        r->as.contour.current = 1 - current;
+    }
+    return error;
+}
+
+static __attribute__((noinline)) rod_error step_contour_with_force(rod *r, const rod_motion *now)
 {
     rod_joint torque_nm[ROD_MAX_LINKS];
     const rod_error error = external_torques(r, torque_nm);
-    if (error != ROD_OK) {
-        return error;
-    }
-    return contour_step(&r->model, &r->state[r->current], &r->state[1 - r->current], &r->motion,
-                        now, (const rod_joint *)torque_nm);
+    return error == ROD_OK ? step_contour(r, now, (const rod_joint *)torque_nm) : error;
+}
+
+static rod_error step_elastic(rod *r, const rod_pose *base, const vec3 *forces_newton)
+{
+    bool restored = false;
+    const rod_error error = elastic_step(&r->as.elastic.model, &r->as.elastic.state, &r->base, base,
+                                         forces_newton, &restored);
+    r->restored_n += restored ? 1 : 0;
+    return error;
+}
+
+static __attribute__((noinline)) rod_error step_elastic_with_force(rod *r, const rod_pose *base)
+{
+    vec3 forces_newton[ROD_MAX_LINKS + 1];
+    const rod_error error = external_forces(r, forces_newton);
+    return error == ROD_OK ? step_elastic(r, base, forces_newton) : error;
+}
+
+static float without_dust(float x)
+{
+    return trig_abs(x) < 1e-30f ? 0.0f : x;
+}
+
+static void sweep_vec3(vec3 *v)
+{
+    *v = (vec3){without_dust(v->x), without_dust(v->y), without_dust(v->z)};
 }
 
 /* A rod at rest decays for ever, into numbers so small that some processors take a hundred times as
  * long over them. One joint a tick is cleared of what is too small to matter. */
 static void sweep(rod *r)
 {
-    contour_state *state = &r->state[r->current];
-    r->swept = r->swept + 1 < r->params.links_n ? r->swept + 1 : 0;
-    for (int axis = 0; axis < 2; axis++) {
-        float *angle = &state->angle_rad[r->swept][axis];
-        float *increment = &state->increment_rad[r->swept][axis];
-        *angle = trig_abs(*angle) < 1e-30f ? 0.0f : *angle;
-        *increment = trig_abs(*increment) < 1e-30f ? 0.0f : *increment;
+    const int i = r->swept = r->swept + 1 < r->params.links_n ? r->swept + 1 : 0;
+    if (is_elastic(r)) {
+        elastic_state *state = &r->as.elastic.state;
+        sweep_vec3(&state->link[i]);
+        sweep_vec3(&state->link_step[i]);
+        sweep_vec3(&state->speed_m_s[i]);
+        sweep_vec3(&state->speed_step[i]);
+        state->tension[i] = without_dust(state->tension[i]);
+        return;
     }
+    contour_state *state = &r->as.contour.state[r->as.contour.current];
+    for (int axis = 0; axis < 2; axis++) {
+        state->angle_rad[i][axis] = without_dust(state->angle_rad[i][axis]);
+        state->increment_rad[i][axis] = without_dust(state->increment_rad[i][axis]);
+    }
+}
+
+/* The first pose: the rod as it lies in its base's axes goes to where the base is. */
+static __attribute__((noinline)) void start(rod *r, const rod_pose *base)
+{
+    joints j;
+    read_joints(r, &j);
+    r->started = true;
+    r->base = *base;
+    lay_joints(r, &j);
 }
 
 rod_error rod_step(rod *r, const rod_pose *base)
@@ -147,17 +286,17 @@ rod_error rod_step(rod *r, const rod_pose *base)
         return ROD_E_POSE;
     }
     if (!r->started) {
-        r->started = true;
-        r->base = *base;
+        start(r, base);
         return ROD_OK;
     }
     const rod_motion now = kinematics_motion(&r->base, base);
-    const rod_error error = r->force != NULL
-                                ? step_with_force(r, &now)
-                                : contour_step(&r->model, &r->state[r->current],
-                                               &r->state[1 - r->current], &r->motion, &now, NULL);
+    rod_error error;
+    if (is_elastic(r)) {
+        error = r->force != NULL ? step_elastic_with_force(r, base) : step_elastic(r, base, NULL);
+    } else {
+        error = r->force != NULL ? step_contour_with_force(r, &now) : step_contour(r, &now, NULL);
+    }
     if (error == ROD_OK) {
-        r->current = 1 - r->current;
         r->base = *base;
         r->motion = now;
         sweep(r);
@@ -167,7 +306,8 @@ rod_error rod_step(rod *r, const rod_pose *base)
 
 const rod_joint *rod_angles(const rod *r)
 {
-    return (const rod_joint *)r->state[r->current].angle_rad;
+    return is_elastic(r) ? (const rod_joint *)r->as.elastic.state.angle_rad
+                         : (const rod_joint *)r->as.contour.state[r->as.contour.current].angle_rad;
 }
 
 int rod_nodes(const rod *r, vec3 *nodes_m)
@@ -175,8 +315,17 @@ int rod_nodes(const rod *r, vec3 *nodes_m)
     if (!r->started) {
         return 0;
     }
-    kinematics_nodes(&r->base, rod_angles(r), r->params.length_m, r->params.links_n, nodes_m);
+    if (is_elastic(r)) {
+        elastic_nodes(&r->as.elastic.model, &r->as.elastic.state, &r->base, nodes_m);
+    } else {
+        kinematics_nodes(&r->base, rod_angles(r), r->params.length_m, r->params.links_n, nodes_m);
+    }
     return r->params.links_n + 1;
+}
+
+uint32_t rod_restored_n(const rod *r)
+{
+    return r->restored_n;
 }
 
 const rod_params *rod_params_of(const rod *r)

@@ -23,6 +23,7 @@
 #define LIMBER_ROD_H
 
 #include "contour.h"
+#include "elastic.h"
 #include "kinematics.h"
 #include "presets.h"
 #include "rod_params.h"
@@ -35,10 +36,20 @@ typedef void (*rod_force_fn)(const vec3 *nodes_m, int nodes_n, vec3 *forces_newt
 /* One rod. Treat the members as private: they may change with any version. */
 typedef struct {
     rod_params params;
-    contour model;
-    contour_state
-        state[2]; /* a step reads one and writes the other, so a failed one spoils nothing */
-    int current, swept;
+    union { /* params.model says which */
+        struct {
+            contour model;
+            contour_state state
+                [2]; /* a step reads one and writes the other, so a failed one spoils nothing */
+            int current;
+        } contour;
+        struct {
+            elastic model;
+            elastic_state state;
+        } elastic;
+    } as;
+    int swept;
+    uint32_t restored_n;
     bool started; /* a base pose has been seen */
     rod_pose base;
     rod_motion motion; /* of the base, in the last tick */
@@ -70,8 +81,12 @@ rod_error rod_step(rod *r, const rod_pose *base);
 const rod_joint *rod_angles(const rod *r);
 
 /* Nodes 0 ... links_n in the world, m, into the caller's links_n + 1 entries. Returns that number,
- * or 0 before the first pose. About 135 instructions a link: ask when you need them. */
+ * or 0 before the first pose. About 135 instructions a link (contour), 15 (elastic): ask when you need them. */
 int rod_nodes(const rod *r, vec3 *nodes_m);
+
+/* Ticks since rod_init whose motion was so violent that the links' lengths were made good from the base
+ * outwards, at the price of some momentum (elastic.h). Always 0 for contour. */
+uint32_t rod_restored_n(const rod *r);
 
 /* The parameters in force. */
 const rod_params *rod_params_of(const rod *r);

@@ -5,7 +5,7 @@
 
 #include "trig.h"
 
-static const char *const MODELS[] = {"contour"};
+static const char *const MODELS[] = {"contour", "elastic"};
 static const char *const SCHEMES[] = {"midpoint", "paper"};
 
 // clang-format off
@@ -55,6 +55,11 @@ const rod_field rod_fields[ROD_FIELDS_N] = {
            "resists bending: takes out ripples", ROD_E_DAMPER, 0.0f, 1e4f, 2.0f),
     NUMBER(ROD_FIELD_PER_JOINT, limit_rad, "limit", "", "rad", "the joint's stop, either side",
            ROD_E_LIMIT, 1e-3f, 1.57f, 1.4f),
+    NUMBER(ROD_FIELD_PER_JOINT, mass_kg, "mass", "m", "kg",
+           "of the node at each link's far end (elastic only)", ROD_E_MASS, 1e-6f, 1e3f, 0.02f),
+    NUMBER(ROD_FIELD_SCALAR, gravity_m_s2, "gravity", "g", "m/s^2",
+           "along the world's -z; 0 switches it off (elastic only)", ROD_E_GRAVITY, 0.0f, 100.0f,
+           9.81f),
 };
 
 static const char *const ERROR_TEXT[] = {
@@ -77,6 +82,8 @@ static const char *const ERROR_TEXT[] = {
     "base pose is not finite, is beyond 1000 m, or its quaternion is not of unit length",
     "an external force is not finite or far too large",
     "the step's result is not finite",
+    "mass is out of bounds",
+    "gravity is out of bounds",
 };
 
 const char *rod_error_text(rod_error error)
@@ -168,7 +175,7 @@ rod_error rod_params_check(const rod_params *params, rod_refusal *refusal)
             }
         }
     }
-    for (int joint = 0; joint < params->links_n; joint++) {
+    for (int joint = 0; params->model == ROD_MODEL_CONTOUR && joint < params->links_n; joint++) {
         const float damper_max =
             2.0f * params->inertia[joint] / params->tick_s - params->drag[joint];
         if (params->damper[joint] > damper_max) {

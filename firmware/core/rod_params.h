@@ -36,12 +36,14 @@ typedef enum {
     ROD_E_POSE = -16,  /* base pose not finite, beyond 1000 m, or quaternion not of unit length */
     ROD_E_FORCE = -17, /* an external force is not finite, or its torque beyond 1e9 N m */
     ROD_E_NOT_FINITE = -18, /* the step's result is not finite */
+    ROD_E_MASS = -19,
+    ROD_E_GRAVITY = -20,
 } rod_error;
 
 /* One clear sentence for each error; never NULL. */
 const char *rod_error_text(rod_error error);
 
-enum { ROD_MODEL_CONTOUR = 0, ROD_MODEL_COUNT };
+enum { ROD_MODEL_CONTOUR = 0, ROD_MODEL_ELASTIC, ROD_MODEL_COUNT };
 enum { ROD_SCHEME_MIDPOINT = 0, ROD_SCHEME_PAPER, ROD_SCHEME_COUNT };
 
 typedef struct {
@@ -59,6 +61,8 @@ typedef struct {
     float spring[ROD_MAX_LINKS];    /* k, N m: pulls joint i straight (Eq. 8) */
     float damper[ROD_MAX_LINKS];    /* c, N m s: resists bending of joint i (Eq. 8) */
     float limit_rad[ROD_MAX_LINKS]; /* the joint's stop, either side, for theta and phi alike */
+    float mass_kg[ROD_MAX_LINKS];   /* m: of the node at the far end of link i (elastic) */
+    float gravity_m_s2;             /* g: along the world's -z (elastic) */
 } rod_params;
 
 typedef enum {
@@ -80,7 +84,7 @@ typedef struct {
     size_t offset;              /* into rod_params: int32_t, or float, or float[ROD_MAX_LINKS] */
 } rod_field;
 
-enum { ROD_FIELDS_N = 13 };
+enum { ROD_FIELDS_N = 15 };
 extern const rod_field rod_fields[ROD_FIELDS_N];
 
 /* The field of that name, or NULL. */

@@ -35,6 +35,12 @@ static inline vec3 vec3_scale(vec3 a, float s)
     return (vec3){a.x * s, a.y * s, a.z * s};
 }
 
+/* a + s b */
+static inline vec3 vec3_add_scaled(vec3 a, vec3 b, float s)
+{
+    return (vec3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
+
 static inline float vec3_dot(vec3 a, vec3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;

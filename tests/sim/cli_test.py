@@ -49,7 +49,7 @@ BAD_OPTIONS = [  # arguments after the track, what the line says
     (["--up", "x"], "--up x: must be y or z"), (["--scale", "0"], "--scale 0: must be"),
     (["--scale", "-1"], "--scale -1"), (["--max-speed", "0"], "--max-speed 0: must be"),
     (["--left-handed=1"], "--left-handed"), (["--preset", "sword"], "there are foil, whip, ribbon"),
-    (["--model", "elastic"], "model = elastic: must be contour"),
+    (["--model", "rubber"], "model = rubber: must be contour or elastic"),
     (["--set", "spring"], "--set spring: must be key=value"), (["--set", "tick=1"], "set by --rate"),
     (["--set", "hold=3"], "hold = 3: out of bounds, must be 1 ... 2"),
     (["--set", "scheme=euler"], "must be midpoint or paper"),

@@ -48,7 +48,7 @@ static inline void bend_rod(rod *r, double angle_rad)
 {
     for (int i = 0; i < r->params.links_n; i++) {
         for (int axis = 0; axis < 2; axis++) {
-            r->state[r->current].angle_rad[i][axis] = (float)angle_rad;
+            r->as.contour.state[r->as.contour.current].angle_rad[i][axis] = (float)angle_rad;
         }
     }
 }

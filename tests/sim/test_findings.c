@@ -117,9 +117,9 @@ static void with_the_base_still_any_shape_straightens(void)
         start_rod(&r, &params, random_pose(&seed, 1.0));
         const rod_pose base = r.base;
         for (int i = 0; i < params.links_n; i++) {
-            r.state[0].angle_rad[i][0] = (float)random_between(&seed, -1.4, 1.4);
-            r.state[0].angle_rad[i][1] = (float)random_between(&seed, -1.4, 1.4);
-            r.state[0].increment_rad[i][0] = (float)random_between(&seed, -0.05, 0.05);
+            r.as.contour.state[0].angle_rad[i][0] = (float)random_between(&seed, -1.4, 1.4);
+            r.as.contour.state[0].angle_rad[i][1] = (float)random_between(&seed, -1.4, 1.4);
+            r.as.contour.state[0].increment_rad[i][0] = (float)random_between(&seed, -0.05, 0.05);
         }
         for (int n = 0; n < 5000; n++) {
             step_rod(&r, base);

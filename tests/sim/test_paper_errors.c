@@ -190,13 +190,15 @@ static void eq8_is_a_dissipation_function_as_an_energy_it_would_brake_per_tick(v
         const double rate_hz = i == 0 ? 500.0 : 1000.0, c = 0.1, mu = 0.2;
         const rod_params params = uniform_rod(1, rate_hz, 0.0, c, 0.0);
         start_rod(&r, &params, STILL);
-        r.state[r.current].increment_rad[0][0] = (float)(1.0 / rate_hz); /* 1 rad/s */
+        r.as.contour.state[r.as.contour.current].increment_rad[0][0] =
+            (float)(1.0 / rate_hz); /* 1 rad/s */
         printed_left[i] = 1.0;
         for (int n = 0; n < (int)(0.2 * rate_hz); n++) {
             step_rod(&r, STILL);
             printed_left[i] *= 1.0 - c / mu;
         }
-        const double left = (double)r.state[r.current].increment_rad[0][0] * rate_hz;
+        const double left =
+            (double)r.as.contour.state[r.as.contour.current].increment_rad[0][0] * rate_hz;
         TEST_ASSERT_DOUBLE_WITHIN(1e-5, exp(-c * 0.2 / mu), left);
     }
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 2.0, log(printed_left[1]) / log(printed_left[0]));

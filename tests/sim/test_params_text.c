@@ -128,7 +128,7 @@ static void test_refusals_on_the_command_line(void)
     expect_set_refused("links=4.5", "links = 4.5: must be a whole number");
     expect_set_refused("links=4,4", "links takes at most 1 value");
     expect_set_refused("hold=1.0001", "hold = 1.0001: must be a whole number");
-    expect_set_refused("model=elastic", "model = elastic: must be contour");
+    expect_set_refused("model=rubber", "model = rubber: must be contour or elastic");
     expect_set_refused("scheme=1", "scheme = 1: must be midpoint or paper");
     expect_set_refused("scheme=midpoint paper", "scheme takes at most 1 value");
     expect_set_refused("a_key_longer_than_the_forty_characters_that_are_shown_of_one=1",

@@ -34,7 +34,7 @@ static double rest(int ticks)
 static double energy(const rod_params *params)
 {
     double sum = 0.0;
-    const contour_state *state = &r.state[r.current];
+    const contour_state *state = &r.as.contour.state[r.as.contour.current];
     ref_init(&ref, params, ROD_SCHEME_MIDPOINT, ref_pose_of(STILL));
     for (int axis = 0; axis < 2; axis++) {
         double x[REF_MAX];
@@ -59,7 +59,7 @@ static void step_adds_no_damping_energy_stays_for_100000_ticks(void)
         params.smoothing[0] = params.smoothing[1] = params.smoothing[2] = 30.0f;
         params.damper[0] = option & 2 ? 1e-3f : 0.0f; /* a trace, in one joint: enough to be seen */
         start_bent(&params, 0.5);
-        r.state[0].angle_rad[3][ROD_THETA] = 0.1f; /* so that all four modes swing */
+        r.as.contour.state[0].angle_rad[3][ROD_THETA] = 0.1f; /* so that all four modes swing */
         const double before = energy(&params);
         TEST_ASSERT_TRUE(rest(100000) < 1.4);
         const double change = energy(&params) / before - 1.0;
@@ -146,7 +146,8 @@ static double let_go(double rate_hz)
     (void)energy(&params); /* for K */
     for (int i = 0; i < 4; i++) {
         const double torque = 0.5 * (ref.K[i][0] + ref.K[i][1] + ref.K[i][2] + ref.K[i][3]);
-        r.state[0].increment_rad[i][0] = (float)(0.5 * torque * ref.dt * ref.dt / ref.mu[i]);
+        r.as.contour.state[0].increment_rad[i][0] =
+            (float)(0.5 * torque * ref.dt * ref.dt / ref.mu[i]);
     }
     (void)rest((int)(0.1 * rate_hz + 0.5));
     return rod_angle(&r, 0, ROD_THETA);

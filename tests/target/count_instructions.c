@@ -38,10 +38,10 @@ static void do_part(part which, const rod_pose *base)
         rod_step(&subject, base);
         break;
     case SOLVE2:
-        penta_solve2(&subject.model.system, b2);
+        penta_solve2(&subject.as.contour.model.system, b2);
         break;
     case SOLVE3:
-        penta_solve3(&subject.model.system, b3);
+        penta_solve3(&subject.as.contour.model.system, b3);
         break;
     case NODES:
         rod_nodes(&subject, nodes);

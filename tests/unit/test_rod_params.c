@@ -90,11 +90,11 @@ static void test_bounds_are_these(void)
         const char *name;
         float min, max;
     } WANTED[ROD_FIELDS_N] = {
-        {"model", 0.0f, 0.0f},     {"scheme", 0.0f, 1.0f}, {"links", 1.0f, ROD_MAX_LINKS},
+        {"model", 0.0f, 1.0f},     {"scheme", 0.0f, 1.0f}, {"links", 1.0f, ROD_MAX_LINKS},
         {"hold", 1.0f, 2.0f},      {"tick", 5e-5f, 0.1f},  {"length", 1e-3f, 10.0f},
         {"inertia", 1e-6f, 1e3f},  {"drag", 0.0f, 1e4f},   {"coupling", 0.0f, 1e6f},
         {"smoothing", 0.0f, 1e6f}, {"spring", 0.0f, 1e6f}, {"damper", 0.0f, 1e4f},
-        {"limit", 1e-3f, 1.57f},
+        {"limit", 1e-3f, 1.57f},   {"mass", 1e-6f, 1e3f},  {"gravity", 0.0f, 100.0f},
     };
     for (int i = 0; i < ROD_FIELDS_N; i++) {
         const rod_field *field = rod_field_find(WANTED[i].name);
@@ -180,7 +180,7 @@ static void test_overdamped_by_drag_alone(void)
 
 static void test_every_error_has_its_own_text(void)
 {
-    for (int a = 0; a >= ROD_E_NOT_FINITE; a--) {
+    for (int a = 0; a >= ROD_E_GRAVITY; a--) {
         const char *text = rod_error_text((rod_error)a);
         TEST_ASSERT_NOT_NULL(text);
         TEST_ASSERT_TRUE(text[0] != '\0');
@@ -189,7 +189,7 @@ static void test_every_error_has_its_own_text(void)
             TEST_ASSERT_TRUE_MESSAGE(strcmp(text, rod_error_text((rod_error)b)) != 0, text);
         }
     }
-    TEST_ASSERT_EQUAL_STRING("unknown error", rod_error_text((rod_error)(ROD_E_NOT_FINITE - 1)));
+    TEST_ASSERT_EQUAL_STRING("unknown error", rod_error_text((rod_error)(ROD_E_GRAVITY - 1)));
     TEST_ASSERT_EQUAL_STRING("unknown error", rod_error_text((rod_error)1));
 }
 

@@ -1,0 +1,134 @@
+/* elastic.c - see elastic.h: what is prepared before a step, and ways into a state and out of it. */
+#include "elastic.h"
+
+#include <string.h>
+
+#include "elastic_private.h"
+
+/* Node 0 and the ghost node before it are given: their columns fall into two rows before the first. */
+int elastic_factor(const elastic *model, const float *stiffness, penta *system)
+{
+    float diagonals[ROD_MAX_LINKS + 2], offs1[ROD_MAX_LINKS + 2], off2[ROD_MAX_LINKS];
+    float *const diagonal = diagonals + 2, *const off1 = offs1 + 2;
+    const elastic_row *row = model->row;
+    diagonal[-1] = diagonal[-2] = off1[-1] = 0.0f;
+    float before = row[0].per_length; /* the ghost link is as long as the first */
+    for (int j = 0; j < model->links_n; j++) {
+        const float here = row[j].per_length;
+        const float both = here + before;
+        const float far = stiffness[j] * here, near = stiffness[j] * before;
+        diagonal[j] = (row[j].mass_kg + row[j].drag) + far * here;
+        diagonal[j - 1] += (stiffness[j] * both) * both;
+        diagonal[j - 2] += near * before;
+        off1[j] = -(far * both);
+        off1[j - 1] -= near * both;
+        off2[j] = far * before;
+        before = here;
+    }
+    return penta_factor(system, model->links_n, diagonal, off1, off2);
+}
+
+void elastic_straight_stiffness(const elastic *model, float *stiffness)
+{
+    for (int j = 0; j < model->links_n; j++) {
+        stiffness[j] = model->row[j].spring + model->row[j].damper;
+    }
+}
+
+rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n)
+{
+    elastic folded;
+    folded.links_n = params->links_n;
+    folded.h_s = params->tick_s * (2.0f / 3.0f);
+    folded.per_h = 1.0f / folded.h_s;
+    const float h_squared = folded.h_s * folded.h_s;
+    folded.fall_m = h_squared * params->gravity_m_s2;
+    for (int i = 0; i < params->links_n; i++) {
+        folded.row[i] = (elastic_row){
+            .length_m = params->length_m[i],
+            .per_length = 1.0f / params->length_m[i],
+            .mass_kg = params->mass_kg[i],
+            .per_mass = 1.0f / params->mass_kg[i],
+            .drag = folded.h_s * params->drag[i],
+            .spring = h_squared * params->spring[i],
+            .damper = folded.h_s * params->damper[i],
+        };
+    }
+    float stiffness[ROD_MAX_LINKS];
+    penta system;
+    elastic_straight_stiffness(&folded, stiffness);
+    *row_n = elastic_factor(&folded, stiffness, &system);
+    if (*row_n != 0) {
+        return ROD_E_PIVOT;
+    }
+    *model = folded;
+    return ROD_OK;
+}
+
+/* --- from and to joint angles -------------------------------------------------------------------- */
+
+/* Where the base was one motion ago. */
+static rod_pose pose_before(const rod_pose *base, const rod_motion *motion)
+{
+    return (rod_pose){
+        vec3_add(base->position_m, quat_rotate(base->orientation, motion->shift_m)),
+        quat_multiply(base->orientation, motion->turn),
+    };
+}
+
+void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *motion,
+                 const rod_joint *angle_rad, const rod_joint *increment_rad, elastic_state *state)
+{
+    const rod_pose before = pose_before(base, motion);
+    frame3 now_frame = quat_frame(base->orientation), before_frame = quat_frame(before.orientation);
+    const float per_tick = model->per_h * (2.0f / 3.0f);
+    memset(state, 0, sizeof *state);
+    state->axis_step = vec3_sub(now_frame.z, before_frame.z);
+    state->base_step_m = vec3_sub(base->position_m, before.position_m);
+    vec3 step_m = state->base_step_m;
+    for (int i = 0; i < model->links_n; i++) {
+        const rod_joint angles_before = {angle_rad[i][ROD_THETA] - increment_rad[i][ROD_THETA],
+                                         angle_rad[i][ROD_PHI] - increment_rad[i][ROD_PHI]};
+        const joint_trig now_trig = kinematics_trig(angle_rad[i]);
+        const joint_trig before_trig = kinematics_trig(angles_before);
+        now_frame = kinematics_turn(&now_frame, &now_trig);
+        before_frame = kinematics_turn(&before_frame, &before_trig);
+        state->link[i] = now_frame.z;
+        state->link_step[i] = vec3_sub(now_frame.z, before_frame.z);
+        step_m = vec3_add_scaled(step_m, state->link_step[i], model->row[i].length_m);
+        state->speed_m_s[i] = vec3_scale(step_m, per_tick);
+        state->angle_rad[i][ROD_THETA] = angle_rad[i][ROD_THETA];
+        state->angle_rad[i][ROD_PHI] = angle_rad[i][ROD_PHI];
+    }
+}
+
+void elastic_increments(const elastic *model, const rod_pose *base, const rod_motion *motion,
+                        const elastic_state *state, rod_joint *increment_rad)
+{
+    const rod_pose before = pose_before(base, motion);
+    vec3 links_before[ROD_MAX_LINKS];
+    for (int i = 0; i < model->links_n; i++) {
+        links_before[i] = vec3_sub(state->link[i], state->link_step[i]);
+        for (int axis = 0; axis < 2; axis++) {
+            increment_rad[i][axis] = state->angle_rad[i][axis];
+        }
+    }
+    kinematics_angles(&before, links_before, model->links_n, increment_rad);
+    for (int i = 0; i < model->links_n; i++) {
+        for (int axis = 0; axis < 2; axis++) {
+            const float gained = state->angle_rad[i][axis] - increment_rad[i][axis];
+            increment_rad[i][axis] = gained > TRIG_PI    ? gained - 2.0f * TRIG_PI
+                                     : gained < -TRIG_PI ? gained + 2.0f * TRIG_PI
+                                                         : gained;
+        }
+    }
+}
+
+void elastic_nodes(const elastic *model, const elastic_state *state, const rod_pose *base,
+                   vec3 *nodes_m)
+{
+    nodes_m[0] = base->position_m;
+    for (int i = 0; i < model->links_n; i++) {
+        nodes_m[i + 1] = vec3_add_scaled(nodes_m[i], state->link[i], model->row[i].length_m);
+    }
+}

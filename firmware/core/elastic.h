@@ -1,0 +1,69 @@
+/* elastic.h - the second model: the elastic rod as physics, on node positions.
+ *
+ * Point masses m_i at the nodes, links of constant length between them, in joint i an ideal bending
+ * spring (its torque is k_i times the angle) and damper (c_i times its rate), drag on each node, gravity.
+ * Second order in time (BDF2); nothing is fitted. Used through rod.h; this header is for readers of
+ * the mathematics and for tests of it. The derivation is in MODEL.md, Section 5.
+ *
+ * All memory is the caller's. A step factors one five-banded matrix and solves it for x, y and z, then
+ * restores the lengths by one to three Newton steps, each one tridiagonal solve. One is enough unless the
+ * motion is hostile; cost is linear in links_n, and stated for three.
+ */
+#ifndef LIMBER_ELASTIC_H
+#define LIMBER_ELASTIC_H
+
+#include "kinematics.h"
+#include "rod_params.h"
+
+/* What a step needs to know of link i, the joint at its near end and the node at its far end, with
+ * h = 2/3 tick folded in. */
+typedef struct {
+    float length_m, per_length; /* l, 1 / l */
+    float mass_kg, per_mass;    /* m, 1 / m */
+    float drag;                 /* h gamma, kg */
+    float spring;               /* h^2 k, kg m^2 */
+    float damper;               /* h c, kg m^2 */
+} elastic_row;
+
+typedef struct {
+    int links_n;
+    float h_s, per_h;
+    float fall_m; /* h^2 g */
+    elastic_row row[ROD_MAX_LINKS];
+} elastic;
+
+/* Two levels of time, each pair as the last value and what it gained in the last tick. */
+typedef struct {
+    vec3 link[ROD_MAX_LINKS], link_step[ROD_MAX_LINKS];       /* unit directions in the world */
+    vec3 speed_m_s[ROD_MAX_LINKS], speed_step[ROD_MAX_LINKS]; /* of the far ends, in the world */
+    /* h^2 times each link's pull in the last tick, kg m */
+    float tension[ROD_MAX_LINKS], tension_step[ROD_MAX_LINKS];
+    vec3 base_step_m, axis_step; /* how the base's place and z moved in the last tick */
+    rod_joint angle_rad[ROD_MAX_LINKS];
+} elastic_state;
+
+/* Fold; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n set to the
+ * 1-based row and *model as it was. */
+rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n);
+
+/* A state from joint angles, what they gained in the last tick, and how the base moved in it. Both have
+ * links_n rows. */
+void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *motion,
+                 const rod_joint *angle_rad, const rod_joint *increment_rad, elastic_state *state);
+
+/* And back: what the joint angles gained in the last tick. */
+void elastic_increments(const elastic *model, const rod_pose *base, const rod_motion *motion,
+                        const elastic_state *state, rod_joint *increment_rad);
+
+/* One tick, in which the base goes from one pose to the next. forces_newton has links_n + 1 rows, one a
+ * node (that on node 0 is the hand's affair), or is NULL. *restored is set where Newton's method left a
+ * link more than 1e-5 off its length, and the lengths were made good from the base outwards instead.
+ * Returns ROD_OK, or ROD_E_NOT_FINITE with *state as it was. */
+rod_error elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
+                       const rod_pose *to, const vec3 *forces_newton, bool *restored);
+
+/* Nodes 0 ... links_n in the world, m. */
+void elastic_nodes(const elastic *model, const elastic_state *state, const rod_pose *base,
+                   vec3 *nodes_m);
+
+#endif
