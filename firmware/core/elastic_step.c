@@ -38,15 +38,21 @@ static inline vec3 direction(vec3 v, vec3 otherwise, float *length)
     return *length > 1e-3f ? vec3_scale(v, 1.0f / *length) : otherwise;
 }
 
-/* A joint bent by alpha has the curvature kappa with |kappa| = 2 sin(alpha / 2). For the torque to be k alpha
- * and c d(alpha)/dt, springs and dampers on kappa are taken stiffer: by alpha / sin alpha and 1 / cos^2(alpha / 2).
- * Both grow without bound towards the fold; beyond 143 degrees they stay. The polynomial is
- * asin(sqrt q) / sqrt q on 0 ... 0.9, to 1.5e-5 below 66 degrees and 5e-4 above. */
-static inline float secant(const elastic_row *row, vec3 curvature, float *damper)
+/* The moment of a joint between two links, and its stiffness h^2 k + h c as a secant. rate: h times what the
+ * curvature gains in a second.
+ *
+ * Bent by alpha, a joint has the curvature kappa = link - near_link, |kappa| = 2 sin(alpha / 2). For its torque to
+ * be k alpha and c d(alpha)/dt, spring and damper on kappa are stiffer by alpha / sin alpha and
+ * 1 / cos^2(alpha / 2). Both grow without bound towards the fold; beyond 143 degrees they stay. The polynomial
+ * is asin(sqrt q) / sqrt q, q = 0 ... 0.9, to 1.5e-5 below 66 degrees and 5e-4 above. The damper sees what of the
+ * rate lies across the joint: the rest is a bent rod turning as a whole. */
+static inline vec3 joint_moment(const elastic_row *row, vec3 near_link, vec3 link, vec3 rate,
+                                float *stiffness)
 {
+    const vec3 curvature = vec3_sub(link, near_link), along = vec3_add(link, near_link);
     const float q_open = 0.25f * vec3_dot(curvature, curvature); /* sin^2(alpha / 2) */
     const float q = q_open < 0.9f ? q_open : 0.9f;
-    const float per_cos_squared = 1.0f / (1.0f - q);
+    const float per_cos_squared = 1.0f / (1.0f - q); /* 4 / |along|^2 */
     const float arc =
         (((((0.93312079f * q - 1.59617995f) * q + 1.07601774f) * q - 0.24781261f) * q +
           0.10942365f) *
@@ -54,8 +60,12 @@ static inline float secant(const elastic_row *row, vec3 curvature, float *damper
          0.16537747f) *
             q +
         1.0f;
-    *damper = row->damper * per_cos_squared;
-    return row->spring * (arc * trig_sqrt(per_cos_squared));
+    const float spring = row->spring * (arc * trig_sqrt(per_cos_squared));
+    const float damper = row->damper * per_cos_squared;
+    const vec3 bending =
+        vec3_add_scaled(rate, along, -0.25f * per_cos_squared * vec3_dot(along, rate));
+    *stiffness = spring + damper;
+    return vec3_add_scaled(vec3_scale(curvature, spring), bending, damper);
 }
 
 /* Where the nodes go if nothing acts on them, and the forces on them there. Each link pulls its two
@@ -79,12 +89,8 @@ static void predict(const elastic *model, const elastic_state *state, vec3 base_
         float length;
         const vec3 unit = direction(link, state->link[i], &length);
 
-        const vec3 curvature = vec3_sub(link, link_before);
-        float damper;
-        const float spring = secant(row, curvature, &damper);
         const vec3 moment =
-            vec3_add_scaled(vec3_scale(curvature, spring), vec3_sub(turn, turn_before), damper);
-        o->stiffness[i] = spring + damper;
+            joint_moment(row, link_before, link, vec3_sub(turn, turn_before), &o->stiffness[i]);
         o->link[i] = link;
         o->unit[i] = unit;
         o->tension[i] = state->tension[i] + state->tension_step[i];
