@@ -38,7 +38,8 @@ typedef struct {
     vec3 speed_m_s[ROD_MAX_LINKS], speed_step[ROD_MAX_LINKS]; /* of the far ends, in the world */
     /* h^2 times each link's pull in the last tick, kg m */
     float tension[ROD_MAX_LINKS], tension_step[ROD_MAX_LINKS];
-    vec3 base_step_m, axis_step; /* how the base's place and z moved in the last tick */
+    vec3 base_step_m, axis_step; /* how the base's place and z moved in the last tick, */
+    float spin_step;             /* and how far it turned about that z, rad */
     rod_joint angle_rad[ROD_MAX_LINKS];
 } elastic_state;
 

@@ -38,21 +38,31 @@ static inline vec3 direction(vec3 v, vec3 otherwise, float *length)
     return *length > 1e-3f ? vec3_scale(v, 1.0f / *length) : otherwise;
 }
 
-/* The moment of a joint between two links, and its stiffness h^2 k + h c as a secant. rate: h times what the
- * curvature gains in a second.
+/* A link at the end of a step in which nothing acts: its direction, in general not of unit length, and h times
+ * how fast it turns: the rate of the direction, that as an angular velocity, and its spin about itself. */
+typedef struct {
+    vec3 link, turn, swing;
+    float spin;
+} motion;
+
+/* The moment of the joint between two links, h^2 times; its stiffness h^2 k + h c as a secant; and the outer
+ * link's spin.
  *
- * Bent by alpha, a joint has the curvature kappa = link - near_link, |kappa| = 2 sin(alpha / 2). For its torque to
- * be k alpha and c d(alpha)/dt, spring and damper on kappa are stiffer by alpha / sin alpha and
- * 1 / cos^2(alpha / 2). Both grow without bound towards the fold; beyond 143 degrees they stay. The polynomial
- * is asin(sqrt q) / sqrt q, q = 0 ... 0.9, to 1.5e-5 below 66 degrees and 5e-4 above. The damper sees what of the
- * rate lies across the joint: the rest is a bent rod turning as a whole. */
-static inline vec3 joint_moment(const elastic_row *row, vec3 near_link, vec3 link, vec3 rate,
+ * Bent by alpha, a joint has the curvature kappa = link - near link, |kappa| = 2 sin(alpha / 2), q its square's
+ * quarter. For a torque of k alpha the spring on kappa is stiffer by alpha / sin alpha, which grows without
+ * bound towards the fold; beyond 143 degrees it stays. The polynomial is asin(sqrt q) / sqrt q, q = 0 ... 0.9, to
+ * 1.5e-5 below 66 degrees and 5e-4 above. The damper resists how fast the two links turn against each other: what
+ * the curvature gains, less what it does where both turn together, as they do across the joint (by what
+ * lies along it) and about it (a joint does not twist: the inner link's spin goes on to the outer). */
+static inline vec3 joint_moment(const elastic_row *row, const motion *near, motion *far,
                                 float *stiffness)
 {
-    const vec3 curvature = vec3_sub(link, near_link), along = vec3_add(link, near_link);
-    const float q_open = 0.25f * vec3_dot(curvature, curvature); /* sin^2(alpha / 2) */
+    const vec3 curvature = vec3_sub(far->link, near->link);
+    const vec3 along = vec3_add(far->link, near->link);
+    const float q_open = 0.25f * vec3_dot(curvature, curvature);
     const float q = q_open < 0.9f ? q_open : 0.9f;
-    const float per_cos_squared = 1.0f / (1.0f - q); /* 4 / |along|^2 */
+    const float per_cos_squared = 1.0f / (1.0f - q); /* of alpha / 2 */
+    const float quarter = 0.25f * per_cos_squared;   /* 1 / |along|^2 */
     const float arc =
         (((((0.93312079f * q - 1.59617995f) * q + 1.07601774f) * q - 0.24781261f) * q +
           0.10942365f) *
@@ -61,37 +71,41 @@ static inline vec3 joint_moment(const elastic_row *row, vec3 near_link, vec3 lin
             q +
         1.0f;
     const float spring = row->spring * (arc * trig_sqrt(per_cos_squared));
-    const float damper = row->damper * per_cos_squared;
-    const vec3 bending =
-        vec3_add_scaled(rate, along, -0.25f * per_cos_squared * vec3_dot(along, rate));
-    *stiffness = spring + damper;
-    return vec3_add_scaled(vec3_scale(curvature, spring), bending, damper);
+
+    const float near_over = vec3_dot(near->swing, far->link);
+    far->spin = near->spin + 2.0f * quarter * (near_over - vec3_dot(far->swing, near->link));
+    const vec3 rate = vec3_sub(far->turn, near->turn);
+    const vec3 level = vec3_add_scaled(rate, along, -quarter * vec3_dot(along, rate));
+    const vec3 bending = vec3_add_scaled(level, vec3_cross(along, curvature),
+                                         -(0.5f * near->spin + quarter * near_over));
+    const float in_plane = quarter * (2.0f - q) * vec3_dot(curvature, rate);
+    const vec3 damping = vec3_add_scaled(vec3_scale(bending, 1.0f - q), curvature, in_plane);
+    *stiffness = spring + row->damper * per_cos_squared;
+    return vec3_add_scaled(vec3_scale(curvature, spring), damping, row->damper);
 }
 
 /* Where the nodes go if nothing acts on them, and the forces on them there. Each link pulls its two
  * ends: by the moments of its joints, M_j - M_{j+1} over its length, and by last tick's tension. */
-static void predict(const elastic *model, const elastic_state *state, vec3 base_turn_m, vec3 axis,
-                    vec3 axis_turn, const vec3 *forces_newton, outcome *o)
+static void predict(const elastic *model, const elastic_state *state, vec3 base_turn_m, motion near,
+                    const vec3 *forces_newton, outcome *o)
 {
     const int n = model->links_n;
     const float h = model->h_s;
-    vec3 near_m = base_turn_m; /* h v of the link's near end */
-    vec3 link_before = axis, turn_before = axis_turn;
+    vec3 near_m = base_turn_m;             /* h v of the link's near end */
     vec3 pull_before = {0.0f, 0.0f, 0.0f}; /* of the link before, without its outer moment */
     float per_length_before = 0.0f;
     for (int i = 0; i < n; i++) {
         const elastic_row *row = &model->row[i];
         const vec3 speed = vec3_add_scaled(state->speed_m_s[i], state->speed_step[i], THIRD);
         const vec3 far_m = vec3_scale(speed, h);
-        const vec3 turn = vec3_scale(vec3_sub(far_m, near_m), row->per_length);
-        const vec3 link =
-            vec3_add(state->link[i], vec3_add_scaled(turn, state->link_step[i], THIRD));
+        motion far;
+        far.turn = vec3_scale(vec3_sub(far_m, near_m), row->per_length);
+        far.link = vec3_add(state->link[i], vec3_add_scaled(far.turn, state->link_step[i], THIRD));
         float length;
-        const vec3 unit = direction(link, state->link[i], &length);
-
-        const vec3 moment =
-            joint_moment(row, link_before, link, vec3_sub(turn, turn_before), &o->stiffness[i]);
-        o->link[i] = link;
+        const vec3 unit = direction(far.link, state->link[i], &length);
+        far.swing = vec3_cross(unit, far.turn);
+        const vec3 moment = joint_moment(row, &near, &far, &o->stiffness[i]);
+        o->link[i] = far.link;
         o->unit[i] = unit;
         o->tension[i] = state->tension[i] + state->tension_step[i];
 
@@ -112,8 +126,7 @@ static void predict(const elastic *model, const elastic_state *state, vec3 base_
         }
         o->node[i] = force;
         near_m = far_m;
-        link_before = link;
-        turn_before = turn;
+        near = far;
     }
     o->node[n - 1] = vec3_sub(o->node[n - 1], pull_before);
     if (n > 1) {
@@ -223,16 +236,31 @@ static void take_over(const elastic *model, const outcome *o, bool lengths_found
     }
 }
 
+/* How far the base turned about its axis, rad; of large turns, what a sine makes of them. */
+static float spin_of(const rod_pose *from, const rod_pose *to, vec3 axis)
+{
+    const quat turn = quat_multiply(to->orientation, quat_conjugate(from->orientation));
+    const float twice = turn.w < 0.0f ? -2.0f : 2.0f;
+    return twice * vec3_dot((vec3){turn.x, turn.y, turn.z}, axis);
+}
+
 rod_error elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
                        const rod_pose *to, const vec3 *forces_newton, bool *restored)
 {
     const vec3 axis = axis_of(to);
     const vec3 axis_step = vec3_sub(axis, axis_of(from));
+    const float spin_step = spin_of(from, to, axis);
     const vec3 base_step_m = vec3_sub(to->position_m, from->position_m);
 
+    /* what the base does in this step, less bar */
+    const vec3 base_turn_m = vec3_add_scaled(base_step_m, state->base_step_m, -THIRD);
+    motion base = {.link = axis,
+                   .turn = vec3_add_scaled(axis_step, state->axis_step, -THIRD),
+                   .spin = spin_step - THIRD * state->spin_step};
+    base.swing = vec3_cross(base.link, base.turn);
+
     outcome o;
-    predict(model, state, vec3_add_scaled(base_step_m, state->base_step_m, -THIRD), axis,
-            vec3_add_scaled(axis_step, state->axis_step, -THIRD), forces_newton, &o);
+    predict(model, state, base_turn_m, base, forces_newton, &o);
     solve(model, &o);
     float excess_m[ROD_MAX_LINKS];
     float worst = measure(model, &o, excess_m);
@@ -249,6 +277,7 @@ rod_error elastic_step(const elastic *model, elastic_state *state, const rod_pos
     *restored = !(worst <= LENGTH_ERROR_MAX);
     take_over(model, &o, !*restored, state);
     state->axis_step = axis_step;
+    state->spin_step = spin_step;
     state->base_step_m = base_step_m;
     kinematics_angles(to, state->link, model->links_n, state->angle_rad);
     return ROD_OK;
