@@ -22,9 +22,9 @@ static const double PAPER_US[MOTIONS_N][SIZES_N] = {{194, 389, 769, 2463},
                                                     {199, 403, 789, 2496},
                                                     {193, 398, 785, 2493}};
 
-/* What is timed. Steps: each motion as the paper has it, then with smoothing; then the circle with
- * two held joints, and a hand still for a minute. Solves: each solver, then each in a chain. */
-enum { SMOOTHED = MOTIONS_N, HOLD_2 = 2 * MOTIONS_N, STILL, STEPS_N };
+/* What is timed. Steps: each motion as the paper has it, then with smoothing, then with the elastic model; then the
+ * circle with two held joints, and a hand still for a minute. Solves: each solver, then each in a chain. */
+enum { SMOOTHED = MOTIONS_N, ELASTIC = 2 * MOTIONS_N, HOLD_2 = 3 * MOTIONS_N, STILL, STEPS_N };
 enum { CHAINED = STEPS_N + SOLVERS_N, ALL_N = CHAINED + SOLVERS_N };
 
 static struct {
@@ -127,6 +127,19 @@ static void sum_up(int samples_n)
     }
 }
 
+/* 0.6 m, 0.2 kg, 0.6 N m^2: a supple rod, the same for any number of links. */
+static void make_elastic(rod_params *params)
+{
+    const float links = (float)params->links_n;
+    params->model = ROD_MODEL_ELASTIC;
+    for (int i = 0; i < params->links_n; i++) {
+        params->length_m[i] = 0.6f / links;
+        params->mass_kg[i] = 0.2f / links;
+        params->spring[i] = links;
+        params->damper[i] = 0.002f * links;
+    }
+}
+
 static void set_up_steps(int links_n)
 {
     for (int which = 0; which < STEPS_N; which++) {
@@ -137,7 +150,10 @@ static void set_up_steps(int links_n)
         params.hold_n = which == HOLD_2 ? 2 : 1;
         params.tick_s = 1.0f / (float)MOTION_RATE_HZ;
         for (int i = 0; i < links_n; i++) {
-            params.smoothing[i] = which >= SMOOTHED && which < HOLD_2 ? 50.0f : 0.0f;
+            params.smoothing[i] = which >= SMOOTHED && which < ELASTIC ? 50.0f : 0.0f;
+        }
+        if (which >= ELASTIC && which < HOLD_2) {
+            make_elastic(&params);
         }
         refused_n += rod_init(&rides[which].rod, &params, NULL) != ROD_OK;
         rides[which].next = 0;
@@ -201,9 +217,10 @@ static void print_steps(void)
     for (int which = 0; which < STEPS_N; which++) {
         char name[40];
         snprintf(name, sizeof name, "%s%s", motions[which % MOTIONS_N].name,
-                 which < SMOOTHED ? ""
-                 : which < HOLD_2 ? ", eta 50"
-                                  : ", hold 2");
+                 which < SMOOTHED  ? ""
+                 : which < ELASTIC ? ", eta 50"
+                 : which < HOLD_2  ? ", elastic"
+                                   : ", hold 2");
         printf("  %-20s", which == STILL ? "still for a minute" : name);
         for (int size = 0; size < SIZES_N; size++) {
             printf("%11.3f %7.3f", cost[which][size].median_ns / 1e3,
@@ -351,7 +368,8 @@ int main(int argc, char **argv)
            "least %d µs. All in float32.\n\n",
            samples_n, BLOCK_NS / 1000);
     printf(
-        "A step is rod_step: a pose in, the angles of N joints out; 100 Hz, MODEL.md's defaults.\n"
+        "A step is rod_step: a pose in, the angles of N joints out; 100 Hz, MODEL.md's defaults;\n"
+        "elastic: 0.6 m, 0.2 kg, 0.6 N m^2.\n"
         "A hand that stays still leaves subnormal numbers, at which many desktop cores are "
         "slow.\n");
     print_steps();
