@@ -76,6 +76,13 @@ static rod_pose pose_before(const rod_pose *base, const rod_motion *motion)
     };
 }
 
+/* Not inlined: it is long, and called twice a link where a rod is laid. */
+static __attribute__((noinline)) void turn_frame(frame3 *frame, float theta_rad, float phi_rad)
+{
+    const joint_trig t = kinematics_trig((const rod_joint){theta_rad, phi_rad});
+    *frame = kinematics_turn(frame, &t);
+}
+
 void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *motion,
                  const rod_joint *angle_rad, const rod_joint *increment_rad, elastic_state *state)
 {
@@ -87,18 +94,16 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
     state->base_step_m = vec3_sub(base->position_m, before.position_m);
     vec3 step_m = state->base_step_m;
     for (int i = 0; i < model->links_n; i++) {
-        const rod_joint angles_before = {angle_rad[i][ROD_THETA] - increment_rad[i][ROD_THETA],
-                                         angle_rad[i][ROD_PHI] - increment_rad[i][ROD_PHI]};
-        const joint_trig now_trig = kinematics_trig(angle_rad[i]);
-        const joint_trig before_trig = kinematics_trig(angles_before);
-        now_frame = kinematics_turn(&now_frame, &now_trig);
-        before_frame = kinematics_turn(&before_frame, &before_trig);
+        const float *angles = angle_rad[i], *gained = increment_rad[i];
+        turn_frame(&now_frame, angles[ROD_THETA], angles[ROD_PHI]);
+        turn_frame(&before_frame, angles[ROD_THETA] - gained[ROD_THETA],
+                   angles[ROD_PHI] - gained[ROD_PHI]);
         state->link[i] = now_frame.z;
         state->link_step[i] = vec3_sub(now_frame.z, before_frame.z);
         step_m = vec3_add_scaled(step_m, state->link_step[i], model->row[i].length_m);
         state->speed_m_s[i] = vec3_scale(step_m, per_tick);
-        state->angle_rad[i][ROD_THETA] = angle_rad[i][ROD_THETA];
-        state->angle_rad[i][ROD_PHI] = angle_rad[i][ROD_PHI];
+        state->angle_rad[i][ROD_THETA] = angles[ROD_THETA];
+        state->angle_rad[i][ROD_PHI] = angles[ROD_PHI];
     }
 }
 

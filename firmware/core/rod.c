@@ -143,12 +143,13 @@ rod_error rod_set_params(rod *r, const rod_params *params, rod_refusal *refusal)
 
 void rod_reset(rod *r)
 {
-    static const joints STRAIGHT_AT_REST;
+    joints straight_at_rest;
+    memset(&straight_at_rest, 0, sizeof straight_at_rest);
     r->swept = 0;
     r->started = false;
     r->base = (rod_pose){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
     r->motion = NO_MOTION;
-    lay_joints(r, &STRAIGHT_AT_REST);
+    lay_joints(r, &straight_at_rest);
 }
 
 void rod_set_force(rod *r, rod_force_fn force, void *context)
