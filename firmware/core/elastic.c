@@ -6,7 +6,8 @@
 #include "elastic_private.h"
 
 /* Node 0 and the ghost node before it are given: their columns fall into two rows before the first. */
-int elastic_factor(const elastic *model, const float *stiffness, penta *system)
+int elastic_factor(const elastic *model, const float *stiffness, const float *tension,
+                   penta *system)
 {
     float diagonals[ROD_MAX_LINKS + 2], offs1[ROD_MAX_LINKS + 2], off2[ROD_MAX_LINKS];
     float *const diagonal = diagonals + 2, *const off1 = offs1 + 2;
@@ -23,6 +24,10 @@ int elastic_factor(const elastic *model, const float *stiffness, penta *system)
         off1[j] = -(far * both);
         off1[j - 1] -= near * both;
         off2[j] = far * before;
+        const float held = tension != NULL && tension[j] > 0.0f ? tension[j] * here : 0.0f;
+        diagonal[j] += held;
+        diagonal[j - 1] += held;
+        off1[j] -= held;
         before = here;
     }
     return penta_factor(system, model->links_n, diagonal, off1, off2);
@@ -37,32 +42,27 @@ void elastic_straight_stiffness(const elastic *model, float *stiffness)
 
 rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n)
 {
-    elastic folded;
-    folded.links_n = params->links_n;
-    folded.h_s = params->tick_s * (2.0f / 3.0f);
-    folded.per_h = 1.0f / folded.h_s;
-    const float h_squared = folded.h_s * folded.h_s;
-    folded.fall_m = h_squared * params->gravity_m_s2;
+    model->links_n = params->links_n;
+    model->h_s = params->tick_s * (2.0f / 3.0f);
+    model->per_h = 1.0f / model->h_s;
+    const float h_squared = model->h_s * model->h_s;
+    model->fall_m = h_squared * params->gravity_m_s2;
     for (int i = 0; i < params->links_n; i++) {
-        folded.row[i] = (elastic_row){
+        model->row[i] = (elastic_row){
             .length_m = params->length_m[i],
             .per_length = 1.0f / params->length_m[i],
             .mass_kg = params->mass_kg[i],
             .per_mass = 1.0f / params->mass_kg[i],
-            .drag = folded.h_s * params->drag[i],
+            .drag = model->h_s * params->drag[i],
             .spring = h_squared * params->spring[i],
-            .damper = folded.h_s * params->damper[i],
+            .damper = model->h_s * params->damper[i],
         };
     }
     float stiffness[ROD_MAX_LINKS];
     penta system;
-    elastic_straight_stiffness(&folded, stiffness);
-    *row_n = elastic_factor(&folded, stiffness, &system);
-    if (*row_n != 0) {
-        return ROD_E_PIVOT;
-    }
-    *model = folded;
-    return ROD_OK;
+    elastic_straight_stiffness(model, stiffness);
+    *row_n = elastic_factor(model, stiffness, NULL, &system);
+    return *row_n == 0 ? ROD_OK : ROD_E_PIVOT;
 }
 
 /* --- from and to joint angles -------------------------------------------------------------------- */

@@ -40,11 +40,12 @@ typedef struct {
     float tension[ROD_MAX_LINKS], tension_step[ROD_MAX_LINKS];
     vec3 base_step_m, axis_step; /* how the base's place and z moved in the last tick, */
     float spin_step;             /* and how far it turned about that z, rad */
+    int32_t hostility;           /* how many of the last ticks were (elastic_step.c) */
     rod_joint angle_rad[ROD_MAX_LINKS];
 } elastic_state;
 
-/* Fold; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n set to the
- * 1-based row and *model as it was. */
+/* Fold; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n set to the 1-based row;
+ * *model is then not to be used. */
 rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n);
 
 /* A state from joint angles, what they gained in the last tick, and how the base moved in it. Both have
@@ -57,11 +58,11 @@ void elastic_increments(const elastic *model, const rod_pose *base, const rod_mo
                         const elastic_state *state, rod_joint *increment_rad);
 
 /* One tick, in which the base goes from one pose to the next. forces_newton has links_n + 1 rows, one a
- * node (that on node 0 is the hand's affair), or is NULL. *restored is set where Newton's method left a
- * link more than 1e-5 off its length, and the lengths were made good from the base outwards instead.
- * Returns ROD_OK, or ROD_E_NOT_FINITE with *state as it was. */
-rod_error elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
-                       const rod_pose *to, const vec3 *forces_newton, bool *restored);
+ * node (that on node 0 is the hand's affair), or is NULL. Returns false where Newton's method left a link more
+ * than 1e-5 off its length, so that the lengths were made good from the base outwards at the price of some
+ * momentum: a hostile tick. There is no failure, every result is finite. */
+bool elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
+                  const rod_pose *to, const vec3 *forces_newton);
 
 /* Nodes 0 ... links_n in the world, m. */
 void elastic_nodes(const elastic *model, const elastic_state *state, const rod_pose *base,

@@ -226,11 +226,10 @@ static __attribute__((noinline)) rod_error step_contour_with_force(rod *r, const
 
 static rod_error step_elastic(rod *r, const rod_pose *base, const vec3 *forces_newton)
 {
-    bool restored = false;
-    const rod_error error = elastic_step(&r->as.elastic.model, &r->as.elastic.state, &r->base, base,
-                                         forces_newton, &restored);
-    r->restored_n += restored ? 1 : 0;
-    return error;
+    const bool found =
+        elastic_step(&r->as.elastic.model, &r->as.elastic.state, &r->base, base, forces_newton);
+    r->restored_n += found ? 0 : 1;
+    return ROD_OK;
 }
 
 static __attribute__((noinline)) rod_error step_elastic_with_force(rod *r, const rod_pose *base)
