@@ -40,10 +40,24 @@ void elastic_straight_stiffness(const elastic *model, float *stiffness)
     }
 }
 
+/* 1 ms, and a little for ticks that float32 makes a little longer: 0.01f is ten steps, not eleven. */
+static const float STEP_MAX_S = 1.0001e-3f;
+
+int elastic_steps_n(float tick_s)
+{
+    int steps_n = 1;
+    while (tick_s > (float)steps_n * STEP_MAX_S) {
+        steps_n++;
+    }
+    return steps_n;
+}
+
 rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n)
 {
     model->links_n = params->links_n;
-    model->h_s = params->tick_s * (2.0f / 3.0f);
+    model->steps_n = elastic_steps_n(params->tick_s);
+    model->step_share = 1.0f / (float)model->steps_n;
+    model->h_s = params->tick_s * model->step_share * (2.0f / 3.0f);
     model->per_h = 1.0f / model->h_s;
     const float h_squared = model->h_s * model->h_s;
     model->fall_m = h_squared * params->gravity_m_s2;
@@ -88,10 +102,10 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
 {
     const rod_pose before = pose_before(base, motion);
     frame3 now_frame = quat_frame(base->orientation), before_frame = quat_frame(before.orientation);
-    const float per_tick = model->per_h * (2.0f / 3.0f);
+    const float per_step = model->per_h * (2.0f / 3.0f), share = model->step_share;
     memset(state, 0, sizeof *state);
-    state->axis_step = vec3_sub(now_frame.z, before_frame.z);
-    state->base_step_m = vec3_sub(base->position_m, before.position_m);
+    state->axis_step = vec3_scale(vec3_sub(now_frame.z, before_frame.z), share);
+    state->base_step_m = vec3_scale(vec3_sub(base->position_m, before.position_m), share);
     vec3 step_m = state->base_step_m;
     for (int i = 0; i < model->links_n; i++) {
         const float *angles = angle_rad[i], *gained = increment_rad[i];
@@ -99,9 +113,9 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
         turn_frame(&before_frame, angles[ROD_THETA] - gained[ROD_THETA],
                    angles[ROD_PHI] - gained[ROD_PHI]);
         state->link[i] = now_frame.z;
-        state->link_step[i] = vec3_sub(now_frame.z, before_frame.z);
+        state->link_step[i] = vec3_scale(vec3_sub(now_frame.z, before_frame.z), share);
         step_m = vec3_add_scaled(step_m, state->link_step[i], model->row[i].length_m);
-        state->speed_m_s[i] = vec3_scale(step_m, per_tick);
+        state->speed_m_s[i] = vec3_scale(step_m, per_step);
         state->angle_rad[i][ROD_THETA] = angles[ROD_THETA];
         state->angle_rad[i][ROD_PHI] = angles[ROD_PHI];
     }
@@ -113,7 +127,8 @@ void elastic_increments(const elastic *model, const rod_pose *base, const rod_mo
     const rod_pose before = pose_before(base, motion);
     vec3 links_before[ROD_MAX_LINKS];
     for (int i = 0; i < model->links_n; i++) {
-        links_before[i] = vec3_sub(state->link[i], state->link_step[i]);
+        links_before[i] =
+            vec3_add_scaled(state->link[i], state->link_step[i], -(float)model->steps_n);
         for (int axis = 0; axis < 2; axis++) {
             increment_rad[i][axis] = state->angle_rad[i][axis];
         }

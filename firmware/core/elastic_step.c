@@ -150,8 +150,8 @@ static float spin_of(const rod_pose *from, const rod_pose *to, vec3 axis)
     return twice * vec3_dot((vec3){turn.x, turn.y, turn.z}, axis);
 }
 
-bool elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
-                  const rod_pose *to, const vec3 *forces_newton)
+static bool step_once(const elastic *model, elastic_state *state, const rod_pose *from,
+                      const rod_pose *to, const vec3 *forces_newton)
 {
     const vec3 axis = axis_of(to);
     const vec3 axis_step = vec3_sub(axis, axis_of(from));
@@ -186,6 +186,34 @@ bool elastic_step(const elastic *model, elastic_state *state, const rod_pose *fr
     state->axis_step = axis_step;
     state->spin_step = spin_step;
     state->base_step_m = base_step_m;
+    return found;
+}
+
+/* The pose at `share` of the way: position linear, quaternion normalised linear the shorter way round. */
+static rod_pose pose_between(const rod_pose *from, const rod_pose *to, float share)
+{
+    const quat a = from->orientation, b = to->orientation;
+    const float rest = 1.0f - share;
+    const float near = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0.0f ? -share : share;
+    const quat q = {a.x * rest + b.x * near, a.y * rest + b.y * near, a.z * rest + b.z * near,
+                    a.w * rest + b.w * near};
+    const float scale = 1.0f / trig_sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+    return (rod_pose){
+        vec3_add_scaled(from->position_m, vec3_sub(to->position_m, from->position_m), share),
+        {q.x * scale, q.y * scale, q.z * scale, q.w * scale}};
+}
+
+bool elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
+                  const rod_pose *to, const vec3 *forces_newton)
+{
+    bool found = true;
+    rod_pose here = *from;
+    for (int i = 1; i < model->steps_n; i++) {
+        const rod_pose next = pose_between(from, to, (float)i * model->step_share);
+        found = step_once(model, state, &here, &next, forces_newton) && found;
+        here = next;
+    }
+    found = step_once(model, state, &here, to, forces_newton) && found;
     kinematics_angles(to, state->link, model->links_n, state->angle_rad);
     return found;
 }
