@@ -81,15 +81,6 @@ rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n)
 
 /* --- from and to joint angles -------------------------------------------------------------------- */
 
-/* Where the base was one motion ago. */
-static rod_pose pose_before(const rod_pose *base, const rod_motion *motion)
-{
-    return (rod_pose){
-        vec3_add(base->position_m, quat_rotate(base->orientation, motion->shift_m)),
-        quat_multiply(base->orientation, motion->turn),
-    };
-}
-
 /* Not inlined: it is long, and called twice a link where a rod is laid. */
 static __attribute__((noinline)) void turn_frame(frame3 *frame, float theta_rad, float phi_rad)
 {
@@ -100,7 +91,7 @@ static __attribute__((noinline)) void turn_frame(frame3 *frame, float theta_rad,
 void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *motion,
                  const rod_joint *angle_rad, const rod_joint *increment_rad, elastic_state *state)
 {
-    const rod_pose before = pose_before(base, motion);
+    const rod_pose before = kinematics_pose_before(base, motion);
     frame3 now_frame = quat_frame(base->orientation), before_frame = quat_frame(before.orientation);
     const float per_step = model->per_h * (2.0f / 3.0f), share = model->step_share;
     memset(state, 0, sizeof *state);
@@ -124,7 +115,7 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
 void elastic_increments(const elastic *model, const rod_pose *base, const rod_motion *motion,
                         const elastic_state *state, rod_joint *increment_rad)
 {
-    const rod_pose before = pose_before(base, motion);
+    const rod_pose before = kinematics_pose_before(base, motion);
     vec3 links_before[ROD_MAX_LINKS];
     for (int i = 0; i < model->links_n; i++) {
         links_before[i] =

@@ -34,20 +34,20 @@ typedef struct {
     elastic_row row[ROD_MAX_LINKS];
 } elastic;
 
-/* Two levels of time, each pair as the last value and what it gained in the last tick. */
+/* Two levels of time, each pair as the last value and what it gained in the last step. */
 typedef struct {
     vec3 link[ROD_MAX_LINKS], link_step[ROD_MAX_LINKS];       /* unit directions in the world */
     vec3 speed_m_s[ROD_MAX_LINKS], speed_step[ROD_MAX_LINKS]; /* of the far ends, in the world */
-    /* h^2 times each link's pull in the last tick, kg m */
+    /* h^2 times each link's pull in the last step, kg m */
     float tension[ROD_MAX_LINKS], tension_step[ROD_MAX_LINKS];
-    vec3 base_step_m, axis_step; /* how the base's place and z moved in the last tick, */
+    vec3 base_step_m, axis_step; /* how the base's place and z moved in the last step, */
     float spin_step;             /* and how far it turned about that z, rad */
-    int32_t hostility;           /* how many of the last ticks were (elastic_step.c) */
+    int32_t hostility;           /* of the last steps: how many were restored (elastic_step.c) */
     rod_joint angle_rad[ROD_MAX_LINKS];
 } elastic_state;
 
 /* How many steps make a tick: one up to 1 ms, and as many as keep each within 1 ms beyond. So a rod is as true at 100 Hz
- * as at 1 kHz, and as costly a second. The base goes evenly from pose to pose meanwhile. */
+ * as at 1 kHz, and as costly a second. The base goes smoothly from pose to pose meanwhile (elastic_step.c). */
 int elastic_steps_n(float tick_s);
 
 /* Fold; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n set to the 1-based row;
@@ -63,12 +63,12 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
 void elastic_increments(const elastic *model, const rod_pose *base, const rod_motion *motion,
                         const elastic_state *state, rod_joint *increment_rad);
 
-/* One tick, in which the base goes from one pose to the next. forces_newton has links_n + 1 rows, one a
+/* One tick, in which the base goes from one pose to the next; previous: its motion in the tick before. forces_newton has links_n + 1 rows, one a
  * node (that on node 0 is the hand's affair), or is NULL. Returns false where Newton's method left a link more
  * than 1e-5 off its length, so that the lengths were made good from the base outwards at the price of some
  * momentum: a hostile tick. There is no failure, every result is finite. */
-bool elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
-                  const rod_pose *to, const vec3 *forces_newton);
+bool elastic_step(const elastic *model, elastic_state *state, const rod_motion *previous,
+                  const rod_pose *from, const rod_pose *to, const vec3 *forces_newton);
 
 /* Nodes 0 ... links_n in the world, m. */
 void elastic_nodes(const elastic *model, const elastic_state *state, const rod_pose *base,

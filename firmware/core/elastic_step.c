@@ -6,6 +6,7 @@
 
 #include <stddef.h>
 
+#include "base_path.h"
 #include "elastic_private.h"
 
 /* Newton's method ends where no link is further than this from its length ... */
@@ -14,9 +15,9 @@ static const float LENGTH_ERROR_GOOD = 1e-6f;
 static const float LENGTH_ERROR_MAX = 1e-5f;
 enum { LENGTH_STEPS_MAX = 3 };
 
-/* Hostility rises by so much with every tick that had to be restored, and falls by one with every other; at its most,
+/* Hostility rises by so much with every step that had to be restored, and falls by one with every other; at its most,
  * and that takes sixteen in a row, the rod is no longer believed to move by itself. */
-enum { HOSTILITY_OF_A_TICK = 4, HOSTILITY_MAX = 64 };
+enum { HOSTILITY_OF_A_STEP = 4, HOSTILITY_MAX = 64 };
 
 static vec3 axis_of(const rod_pose *pose)
 {
@@ -117,8 +118,8 @@ static void take_over(const elastic *model, const elastic_outcome *o, const floa
     state->hostility -= state->hostility > 0 ? 1 : 0;
 }
 
-/* A hostile tick leaves the directions of the links; their speeds are what that makes of them. Where there is no end
- * of such ticks the rod is driven by what its own lengths miss: then it goes along with its base, until it
+/* A hostile step leaves the directions of the links; their speeds are what that makes of them. Where there is no end
+ * of such steps the rod is driven by what its own lengths miss: then it goes along with its base, until it
  * has found a shape that the next step can be computed from. */
 static void restore(const elastic *model, const elastic_outcome *o, vec3 base_turn_m,
                     elastic_state *state)
@@ -139,7 +140,7 @@ static void restore(const elastic *model, const elastic_outcome *o, vec3 base_tu
         state->speed_m_s[i] = speed;
         state->tension[i] = state->tension_step[i] = 0.0f;
     }
-    state->hostility += moves ? HOSTILITY_OF_A_TICK : 0;
+    state->hostility += moves ? HOSTILITY_OF_A_STEP : 0;
 }
 
 /* How far the base turned about its axis, rad; of large turns, what a sine makes of them. */
@@ -189,29 +190,19 @@ static bool step_once(const elastic *model, elastic_state *state, const rod_pose
     return found;
 }
 
-/* The pose at `share` of the way: position linear, quaternion normalised linear the shorter way round. */
-static rod_pose pose_between(const rod_pose *from, const rod_pose *to, float share)
-{
-    const quat a = from->orientation, b = to->orientation;
-    const float rest = 1.0f - share;
-    const float near = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w < 0.0f ? -share : share;
-    const quat q = {a.x * rest + b.x * near, a.y * rest + b.y * near, a.z * rest + b.z * near,
-                    a.w * rest + b.w * near};
-    const float scale = 1.0f / trig_sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    return (rod_pose){
-        vec3_add_scaled(from->position_m, vec3_sub(to->position_m, from->position_m), share),
-        {q.x * scale, q.y * scale, q.z * scale, q.w * scale}};
-}
-
-bool elastic_step(const elastic *model, elastic_state *state, const rod_pose *from,
-                  const rod_pose *to, const vec3 *forces_newton)
+bool elastic_step(const elastic *model, elastic_state *state, const rod_motion *previous,
+                  const rod_pose *from, const rod_pose *to, const vec3 *forces_newton)
 {
     bool found = true;
     rod_pose here = *from;
-    for (int i = 1; i < model->steps_n; i++) {
-        const rod_pose next = pose_between(from, to, (float)i * model->step_share);
-        found = step_once(model, state, &here, &next, forces_newton) && found;
-        here = next;
+    if (model->steps_n > 1) {
+        const rod_pose before = kinematics_pose_before(from, previous);
+        const base_path path = base_path_between(&before, from, to);
+        for (int i = 1; i < model->steps_n; i++) {
+            const rod_pose next = base_path_pose(&path, (float)i * model->step_share);
+            found = step_once(model, state, &here, &next, forces_newton) && found;
+            here = next;
+        }
     }
     found = step_once(model, state, &here, to, forces_newton) && found;
     kinematics_angles(to, state->link, model->links_n, state->angle_rad);

@@ -10,6 +10,14 @@ rod_motion kinematics_motion(const rod_pose *from, const rod_pose *to)
     };
 }
 
+rod_pose kinematics_pose_before(const rod_pose *to, const rod_motion *motion)
+{
+    return (rod_pose){
+        vec3_add(to->position_m, quat_rotate(to->orientation, motion->shift_m)),
+        quat_multiply(to->orientation, motion->turn),
+    };
+}
+
 frame3 kinematics_turn(const frame3 *parent, const joint_trig *t)
 {
     /* about y by theta: x and z turn in their plane ... */

@@ -34,6 +34,9 @@ typedef struct {
 
 rod_motion kinematics_motion(const rod_pose *from, const rod_pose *to);
 
+/* And back: where a base that is now at `to` was one motion ago. */
+rod_pose kinematics_pose_before(const rod_pose *to, const rod_motion *motion);
+
 static inline joint_trig kinematics_trig(const rod_joint angles_rad)
 {
     return (joint_trig){trig_sincos(angles_rad[ROD_THETA]), trig_sincos(angles_rad[ROD_PHI])};

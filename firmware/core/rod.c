@@ -226,8 +226,8 @@ static __attribute__((noinline)) rod_error step_contour_with_force(rod *r, const
 
 static rod_error step_elastic(rod *r, const rod_pose *base, const vec3 *forces_newton)
 {
-    const bool found =
-        elastic_step(&r->as.elastic.model, &r->as.elastic.state, &r->base, base, forces_newton);
+    const bool found = elastic_step(&r->as.elastic.model, &r->as.elastic.state, &r->motion,
+                                    &r->base, base, forces_newton);
     r->restored_n += found ? 0 : 1;
     return ROD_OK;
 }
