@@ -3,6 +3,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -10,6 +11,9 @@ import threading
 import time
 import unittest
 from pathlib import Path
+
+# A shell's background job ignores Ctrl-C and hands that on: the programs under test are to be stopped by it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 LIMBER = FAKE = SHIM = None  # the arguments of the test program
 STATES = {name: number for number, name in enumerate(
