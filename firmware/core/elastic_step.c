@@ -24,16 +24,19 @@ static vec3 axis_of(const rod_pose *pose)
     return quat_rotate(pose->orientation, (vec3){0.0f, 0.0f, 1.0f});
 }
 
-/* Forces to displacements. Where a folded joint's secant is too stiff for float32 beside the rest, the
- * matrix of the straight rod, which elastic_prepare has found good, serves. */
-static __attribute__((noinline)) void solve(const elastic *model, elastic_outcome *o)
+/* Forces to displacements. Of the tension the matrix holds what lasts, the least of the last two steps and the next: a
+ * jump's, of one step, would stiffen a rod that is slack by then. Where a folded joint's secant is too stiff for
+ * float32 beside the rest, the matrix of the straight rod, which elastic_prepare has found good, serves. */
+static __attribute__((noinline)) void solve(const elastic *model, const elastic_state *state,
+                                            elastic_outcome *o)
 {
     penta system;
-    float stiffness[ROD_MAX_LINKS];
+    float stiffness[ROD_MAX_LINKS], lasting[ROD_MAX_LINKS];
     for (int i = 0; i < model->links_n; i++) {
         stiffness[i] = o->joint[i].stiffness;
+        lasting[i] = state->tension[i] - trig_abs(state->tension_step[i]);
     }
-    if (elastic_factor(model, stiffness, o->tension, &system) != 0) {
+    if (elastic_factor(model, stiffness, lasting, &system) != 0) {
         elastic_straight_stiffness(model, stiffness);
         (void)elastic_factor(model, stiffness, NULL, &system);
     }
@@ -168,7 +171,7 @@ static bool step_once(const elastic *model, elastic_state *state, const rod_pose
 
     elastic_outcome o;
     elastic_predict(model, state, base_turn_m, base, forces_newton, &o);
-    solve(model, &o);
+    solve(model, state, &o);
     float excess_m[ROD_MAX_LINKS];
     float worst = measure(model, &o, excess_m);
     for (int i = 0; i < LENGTH_STEPS_MAX; i++) {
