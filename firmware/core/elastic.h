@@ -42,7 +42,6 @@ typedef struct {
     float tension[ROD_MAX_LINKS], tension_step[ROD_MAX_LINKS];
     vec3 base_step_m, axis_step; /* how the base's place and z moved in the last step, */
     float spin_step;             /* and how far it turned about that z, rad */
-    int32_t hostility;           /* of the last steps: how many were restored (elastic_step.c) */
     rod_joint angle_rad[ROD_MAX_LINKS];
 } elastic_state;
 

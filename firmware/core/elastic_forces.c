@@ -3,6 +3,10 @@
 
 #include "elastic_private.h"
 
+/* What spin and torsion do is not in the matrix: it is taken with a damper of at most so many times what the node resists
+ * turning with, m l^2. Beyond that it would drive the rod; and a joint so damped hardly moves. */
+static const float DAMPER_MAX = 600.0f;
+
 /* The moment of the joint between two links, h^2 times; its stiffness h^2 k + h c as a secant; the outer link's spin;
  * and what of a damper's torque a curvature cannot tell (add_torsion).
  *
@@ -33,13 +37,15 @@ static inline vec3 joint_moment(const elastic_row *row, const elastic_motion *ne
     const float damper = row->damper * per_cos_squared;
 
     const vec3 normal = vec3_cross(near->unit, far->unit);
+    const float most = DAMPER_MAX * row->mass_kg * row->length_m * row->length_m;
+    const float share = damper <= most ? 1.0f : most / damper;
     load->fold = vec3_scale(normal, 0.5f * per_cos_squared);
     const float about = near->spin - vec3_dot(near->turn, load->fold);
     far->spin = about - vec3_dot(far->turn, load->fold);
-    const vec3 rate = vec3_add_scaled(vec3_sub(far->turn, near->turn), normal, -about);
+    const vec3 rate = vec3_add_scaled(vec3_sub(far->turn, near->turn), normal, -about * share);
     const vec3 bending =
         vec3_add_scaled(rate, along, -0.25f * per_cos_squared * vec3_dot(along, rate));
-    load->torsion = damper * vec3_dot(bending, normal);
+    load->torsion = share * damper * vec3_dot(bending, normal);
     load->stiffness = spring + damper;
     return vec3_add_scaled(vec3_scale(curvature, spring), bending, damper);
 }

@@ -30,7 +30,7 @@ BOUNDS = {
     ("jerk", "soft"): 0.25, ("jerk", "medium"): 0.13, ("jerk", "stiff"): 0.08,
     ("shake", "soft"): ANY, ("shake", "medium"): 0.09, ("shake", "stiff"): 2.5,
     ("recorded-shake", "soft"): 0.5, ("recorded-shake", "medium"): 0.16, ("recorded-shake", "stiff"): 3.0,
-    ("recorded-arcs", "soft"): 0.4, ("recorded-arcs", "medium"): 0.13, ("recorded-arcs", "stiff"): 0.11,
+    ("recorded-arcs", "soft"): 0.9, ("recorded-arcs", "medium"): 0.13, ("recorded-arcs", "stiff"): 0.11,
 }
 
 
