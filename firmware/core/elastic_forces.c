@@ -64,11 +64,14 @@ static void add_moments(const elastic *model, const elastic_state *state, vec3 b
         const elastic_row *row = &model->row[i];
         const vec3 speed = vec3_add_scaled(state->speed_m_s[i], state->speed_step[i], THIRD);
         const vec3 far_m = vec3_scale(speed, h);
-        elastic_motion far;
-        far.turn = vec3_scale(vec3_sub(far_m, near_m), row->per_length);
-        far.link = vec3_add(state->link[i], vec3_add_scaled(far.turn, state->link_step[i], THIRD));
+        const vec3 turn = vec3_scale(vec3_sub(far_m, near_m), row->per_length);
+        const vec3 link =
+            vec3_add(state->link[i], vec3_add_scaled(turn, state->link_step[i], THIRD));
         float length;
-        far.unit = direction(far.link, state->link[i], &length);
+        elastic_motion far = {.link = link,
+                              .unit = direction(link, state->link[i], &length),
+                              .turn = turn,
+                              .spin = 0.0f};
         const vec3 moment = joint_moment(row, &near, &far, &o->joint[i]);
         o->link[i] = far.link;
         o->unit[i] = far.unit;
