@@ -40,13 +40,13 @@ void elastic_straight_stiffness(const elastic *model, float *stiffness)
     }
 }
 
-/* 1 ms, and a little for ticks that float32 makes a little longer: 0.01f is ten steps, not eleven. */
-static const float STEP_MAX_S = 1.0001e-3f;
+/* And a little, for ticks that float32 makes a little longer: 0.01f is ten steps, not eleven. */
+static const float STEP_S = 1.0001e-3f, LONGEST_STEP_S = 2.0002e-3f;
 
 int elastic_steps_n(float tick_s)
 {
     int steps_n = 1;
-    while (tick_s > (float)steps_n * STEP_MAX_S) {
+    while (tick_s > LONGEST_STEP_S && tick_s > (float)steps_n * STEP_S) {
         steps_n++;
     }
     return steps_n;

@@ -1,7 +1,9 @@
-/* presets.h - ready-made rods, stiff enough for real hands (3 ... 15 m/s, 50 ... 100 m/s^2).
+/* presets.h - ready-made rods: for the contour model stiff enough for real hands (3 ... 15 m/s, 50 ... 100 m/s^2),
+ * for the elastic one what such a thing is made of.
  *
- * Each coefficient runs linearly from the first joint to the last, so a preset exists for every N.
- * Constant tables in flash; pure functions.
+ * A contour preset has coefficients that run linearly from the first joint to the last, and links of one length,
+ * so with more links it is longer. An elastic preset is one rod whatever the number of links: with more of them
+ * it is the same length, cut finer. Constant tables in flash; pure functions.
  */
 #ifndef LIMBER_PRESETS_H
 #define LIMBER_PRESETS_H
@@ -12,6 +14,17 @@ typedef struct {
     float first, last;
 } rod_taper;
 
+/* A rod of one material and one shape of section, whose thickness runs linearly from butt to tip. */
+typedef struct {
+    float length_m;
+    float bending_n_m2; /* E I at the butt; goes with the fourth power of the thickness */
+    float mass_kg_m;    /* rho A at the butt; with its square */
+    float tip;          /* thickness of the tip, where the butt's is 1 */
+    float
+        relaxation_s; /* c / k of every joint: 2 zeta / omega for a mode that is to be damped by zeta */
+    float drag_n_s_m2; /* of the air, per metre of rod */
+} rod_blank;
+
 typedef struct {
     const char *name;
     const char *what; /* half a sentence for people */
@@ -19,6 +32,7 @@ typedef struct {
     int hold_n;
     float hand_coupling; /* beta of joint 1, to the hand: 0 lets it turn freely */
     rod_taper length_m, inertia, drag, coupling, smoothing, spring, damper, limit_rad;
+    rod_blank elastic;
 } rod_preset;
 
 enum { ROD_PRESETS_N = 5 };
@@ -27,8 +41,8 @@ extern const rod_preset rod_presets[ROD_PRESETS_N];
 /* The preset of that name, or NULL. */
 const rod_preset *rod_preset_find(const char *name);
 
-/* All parameters of the preset for links_n links (1 ... ROD_MAX_LINKS; preset->links_n suits it
- * best), model and scheme as by default, at a 1 ms tick. */
-void rod_preset_fill(const rod_preset *preset, int links_n, rod_params *params);
+/* All parameters of the preset for a model (ROD_MODEL_...) and links_n links (1 ... ROD_MAX_LINKS; preset->links_n
+ * suits it best), at a 1 ms tick; what the model does not read, and the scheme, as by default. */
+void rod_preset_fill(const rod_preset *preset, int32_t model, int links_n, rod_params *params);
 
 #endif

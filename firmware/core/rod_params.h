@@ -55,12 +55,14 @@ typedef struct {
     float tick_s; /* dt */
     float length_m[ROD_MAX_LINKS]; /* l: link i reaches from node i-1 to node i */
     float inertia[ROD_MAX_LINKS];  /* mu, kg m^2: resists turning of joint i in the world */
-    float drag[ROD_MAX_LINKS];     /* gamma, N m s: resists turning of joint i in the world */
+    float drag[ROD_MAX_LINKS];     /* gamma, N m s: resists turning of joint i in the world
+                                      (elastic: N s/m, motion of node i through it) */
     float coupling[ROD_MAX_LINKS]; /* beta, N m: pulls joint i and joint i-1 to one angle (Eq. 7) */
     float smoothing[ROD_MAX_LINKS]; /* eta, N m: pulls joints i-1, i, i+1 onto a line (Eq. 2) */
     float spring[ROD_MAX_LINKS];    /* k, N m: pulls joint i straight (Eq. 8) */
     float damper[ROD_MAX_LINKS];    /* c, N m s: resists bending of joint i (Eq. 8) */
-    float limit_rad[ROD_MAX_LINKS]; /* the joint's stop, either side, for theta and phi alike */
+    float limit_rad[ROD_MAX_LINKS]; /* the joint's stop, either side, for theta and phi alike
+                                       (elastic: the rod has none; what it drives may) */
     float mass_kg[ROD_MAX_LINKS];   /* m: of the node at the far end of link i (elastic) */
     float gravity_m_s2;             /* g: along the world's -z (elastic) */
 } rod_params;
@@ -80,6 +82,7 @@ typedef struct {
     rod_field_kind kind;
     rod_error error; /* what rod_params_check returns when this field is out of bounds */
     float min, max, initial;
+    uint32_t models;            /* which read it: 1 << ROD_MODEL_... */
     const char *const *choices; /* names of the values of a CHOICE, max + 1 of them */
     size_t offset;              /* into rod_params: int32_t, or float, or float[ROD_MAX_LINKS] */
 } rod_field;
@@ -89,6 +92,9 @@ extern const rod_field rod_fields[ROD_FIELDS_N];
 
 /* The field of that name, or NULL. */
 const rod_field *rod_field_find(const char *name);
+
+/* Does the model (ROD_MODEL_...) read the field at all? */
+bool rod_field_is_read(const rod_field *field, int32_t model);
 
 /* One value, as a number whatever the kind; joint counts from 0 and is ignored unless PER_JOINT.
  * rod_field_set writes without checking (rod_params_check does); a PER_JOINT field takes one entry. */
@@ -110,8 +116,15 @@ typedef struct {
  * Returns ROD_OK or the first error; fills *refusal if that is not NULL. Cost: about 20 N compares. */
 rod_error rod_params_check(const rod_params *params, rod_refusal *refusal);
 
-/* The tick rate from which on every joint's fastest period spans at least about six ticks:
- * sqrt(max (k + 4 beta + 16 eta) / mu). Below it the rod is stable but under-resolved. Hz. */
+/* The lowest natural frequency of an elastic rod in a still hand, as its spring, mass and length make it
+ * (gravity adds a little to a rod that hangs and takes a little from one that stands). 0 where a joint has no
+ * spring, and for contour, which has no such thing. Hz. */
+float rod_params_first_mode_hz(const rod_params *params);
+
+/* The rate of steps from which on the motion is resolved by about six steps a period (2 pi), Hz. contour, a step a
+ * tick: every joint's fastest period, sqrt(max (k + 4 beta + 16 eta) / mu). elastic, of steps within 1 ms
+ * (elastic_steps_n): that of the first mode; modes too fast for that are damped away by BDF2. Below it either rod is
+ * stable, but under-resolved. */
 float rod_params_resolving_rate_hz(const rod_params *params);
 
 #endif
