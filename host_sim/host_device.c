@@ -6,6 +6,9 @@
 #include "sim.h"
 
 enum { BUS_BAUD_MIN = 9600, BUS_BAUD_MAX = 4500000 };
+enum {
+    BOARD_CLOCK_HZ = 168000000
+}; /* what does not fit the board's tick is refused here as well */
 #define HOBBY_US_PER_RAD 636.6198f
 
 static uint32_t now_us(void *context)
@@ -198,6 +201,7 @@ static void boot(host_device *h, float tick_s, int links_n)
                                 .servos_kind = (uint8_t)h->servos.kind,
                                 .watcher = body_log_watcher(&h->log)};
     h->boot.clock_kind = CLOCK_HOST;
+    h->boot.clock_hz = BOARD_CLOCK_HZ;
     h->boot.estop_ignored = true;
     servo_supply(h, false);
     pwm_stop(h);

@@ -35,6 +35,7 @@ seq:
         'message_type::stats_get': stats_get
         'message_type::stats': stats
         'message_type::log': log
+        'message_type::rod_stats': rod_stats
         'message_type::pose': pose
         'message_type::angles': angles
         'message_type::nodes': nodes
@@ -354,6 +355,15 @@ types:
         enum: log_level
         doc: "log level"
       - {id: text, type: str, size-eos: true, terminator: 0}
+  rod_stats:
+    doc: "counters of the rod; just before each STATS; from the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "that of the STATS_GET; 0 unasked"
+      - id: lengths_restored
+        type: u4
+        doc: "elastic: ticks so violent that lengths were made good from the base outwards"
   pose:
     doc: "where the rod's base is; to the device"
     seq:
@@ -813,6 +823,7 @@ enums:
     0x07: stats_get
     0x08: stats
     0x09: log
+    0x0a: rod_stats
     0x10: pose
     0x11: angles
     0x12: nodes

@@ -27,6 +27,7 @@
     MESSAGE(STATS_GET, stats_get, 0x07, NONE, TO_DEVICE, KEPT, "asks for STATS at once")                         \
     MESSAGE(STATS, stats, 0x08, NONE, FROM_DEVICE, TELEMETRY, "every counter; at 1 Hz and when asked for")       \
     MESSAGE(LOG, log, 0x09, TEXT, FROM_DEVICE, LOGS, "a line for people")                                        \
+    MESSAGE(ROD_STATS, rod_stats, 0x0A, NONE, FROM_DEVICE, TELEMETRY, "counters of the rod; just before each STATS") \
     MESSAGE(POSE, pose, 0x10, NONE, TO_DEVICE, KEPT, "where the rod's base is")                                  \
     MESSAGE(ANGLES, angles, 0x11, ANGLES, FROM_DEVICE, ANGLES, "the joint angles of a tick")                     \
     MESSAGE(NODES, nodes, 0x12, NODES, FROM_DEVICE, NODES, "where the link ends are, for graphics")              \
@@ -145,6 +146,10 @@
     ONE(of, u32, clock_left_out, "TIMESYNC exchanges too slow or impossible")                                    \
     ONE(of, u32, clock_jumps, "times one of the clocks was found to have jumped")                                \
     ONE(of, u32, tick_max_us, "longest tick since start")
+
+#define ROD_STATS_FIELDS(of, ONE, MANY, NAME)                                                                    \
+    ONE(of, u16, request_id, "that of the STATS_GET; 0 unasked")                                                 \
+    ONE(of, u32, lengths_restored, "elastic: ticks so violent that lengths were made good from the base outwards")
 
 #define LOG_FIELDS(of, ONE, MANY, NAME) ONE(of, u8, level, "log level")
 

@@ -43,8 +43,8 @@ typedef struct {
     device_watcher watcher;
 } device_config;
 
-/* Settings: 8 lists of a float a joint, 5 of one a servo, names and single values. */
-enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 72 * ROD_MAX_LINKS + 1024 };
+/* Settings: 9 lists of a float a joint, 5 of one a servo, names and single values. */
+enum { DEVICE_ANSWERS_KEPT_N = 8, DEVICE_SETTINGS_BYTES = 76 * ROD_MAX_LINKS + 512 };
 
 /* Parts of the tick that must have come round before the watchdog is fed. */
 enum {

@@ -3,6 +3,7 @@
 
 #include "answers.h"
 #include "saved_params.h"
+#include "tick_budget.h"
 
 static void take_list(device *d, const message_param_list *list)
 {
@@ -92,11 +93,14 @@ static void commit(device *d, uint16_t request_id, uint8_t type)
 {
     const bool all_allowed = supervisor_duties[d->supervisor.state].change_all;
     params_refusal why;
+    char text[MESSAGES_TEXT_MAX + 1];
     if (d->arming.id != 0 || d->servicing.id != 0) {
         answers_refuse_for(d, request_id, type, REASON_BUSY, "the servos are being talked to");
         return;
     }
-    if (!fits_the_line(d, &why) || !params_check_changes(&d->params, all_allowed, &why) ||
+    if (!fits_the_line(d, &why) ||
+        !tick_budget_check(&d->params.staged, d->boot.clock_hz, text, &why) ||
+        !params_check_changes(&d->params, all_allowed, &why) ||
         !device_apply_params(d, &d->params.staged, all_allowed, &why)) {
         answers_refuse(d, request_id, type, &why);
         return;

@@ -208,8 +208,8 @@ bool params_stage_preset(params *p, const char *name, params_refusal *why)
         return refuse(why, (params_refusal){REASON_NAME, -1, 0, 0, 0, name, text_of(REASON_NAME)});
     }
     const float tick_s = p->in_force.rod.tick_s;
-    /* as many links as the rod in the hand has */
-    rod_preset_fill(preset, p->in_force.rod.links_n, &p->staged.rod);
+    /* the model and as many links as the rod in the hand has */
+    rod_preset_fill(preset, p->in_force.rod.model, p->in_force.rod.links_n, &p->staged.rod);
     p->staged.rod.tick_s = tick_s;
     p->is_staged = true;
     return true;
@@ -246,13 +246,7 @@ bool params_refuse_rod(rod_error error, const rod_refusal *refusal, params_refus
 static bool check_rod(const params_set *set, params_refusal *why)
 {
     rod_refusal refusal;
-    rod_error error = rod_params_check(&set->rod, &refusal);
-    int row_n;
-    contour trial; /* 2 KB of stack: memory of its own would be idle for ever */
-    if (error == ROD_OK) {
-        error = contour_prepare(&trial, &set->rod, &row_n);
-        refusal = (rod_refusal){error, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
-    }
+    const rod_error error = rod_params_check(&set->rod, &refusal);
     return error == ROD_OK || params_refuse_rod(error, &refusal, why);
 }
 

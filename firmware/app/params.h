@@ -85,7 +85,8 @@ bool params_refuse_rod(rod_error error, const rod_refusal *refusal, params_refus
 /* The staged set, checked before, is in force from here on. */
 void params_take(params *p);
 
-/* Check the changes and the rod, and take the set if both are right. */
+/* Check the changes and the rod's bounds, and take the set if both are right; what else a rod may refuse, whoever
+ * makes one of the set hears from it. */
 bool params_commit(params *p, bool all_allowed, params_refusal *why);
 
 #endif

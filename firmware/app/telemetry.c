@@ -195,8 +195,17 @@ static void send_heartbeat(device *d)
     (void)link_send(&d->link, &m, d->now_us);
 }
 
+static void send_rod_stats(device *d, uint16_t request_id)
+{
+    const message m = {
+        .type = MESSAGE_ROD_STATS,
+        .rod_stats = {.request_id = request_id, .lengths_restored = rod_restored_n(&d->body.rod)}};
+    (void)link_send(&d->link, &m, d->now_us);
+}
+
 void telemetry_stats(device *d, uint16_t request_id)
 {
+    send_rod_stats(d, request_id);
     const frame_counts *f = &d->link.decoder.counts;
     const link_counts *l = &d->link.counts;
     const uint32_t *verdicts = d->poses.count;

@@ -33,7 +33,8 @@ typedef struct {
     hal_reset_cause cause;
     hal_fault fault; /* with HAL_RESET_FAULT */
     uint32_t pc, lr, cfsr;
-    uint32_t clock_hz; /* of the core, as reached */
+    uint32_t
+        clock_hz; /* of the core, as reached; what a tick may take is told from it (0: anything) */
     uint8_t
         clock_kind; /* 0 HSE through the PLL, 1 HSI through the PLL, 2 HSI, 3 emulator, 4 host */
     bool estop_ignored; /* no such pin here (emulator, host) */

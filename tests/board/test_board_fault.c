@@ -112,13 +112,13 @@ static void the_stack_is_told_from_the_rest(void)
     }
 }
 
-static void the_guard_is_4_kb_without_any_access(void)
+static void the_guard_is_8_kb_without_any_access(void)
 {
     static mpu_registers mpu;
     static uint32_t words[64];
-    stack_guard(&mpu, 0x10001000, words);
-    TEST_ASSERT_EQUAL_HEX32(0x10001000, mpu.rbar);
-    TEST_ASSERT_EQUAL_UINT32(4096, 2u << (mpu.rasr >> 1 & 0x1F));
+    stack_guard(&mpu, 0x10002000, words);
+    TEST_ASSERT_EQUAL_HEX32(0x10002000, mpu.rbar);
+    TEST_ASSERT_EQUAL_UINT32(8192, 2u << (mpu.rasr >> 1 & 0x1F));
     TEST_ASSERT_EQUAL_HEX32(0, mpu.rasr & 7u << 24); /* AP: nobody */
     TEST_ASSERT_TRUE((mpu.rasr & 1) != 0 && (mpu.ctrl & 1) != 0);
     TEST_ASSERT_TRUE((mpu.ctrl & MPU_CTRL_PRIVDEFENA) != 0); /* all else stays as it was */
@@ -130,12 +130,12 @@ static void any_word_of_the_pattern_shows(void)
     static mpu_registers mpu;
     static uint32_t words[64];
     for (int i = 0; i < STACK_PATTERN_WORDS; i++) {
-        stack_guard(&mpu, 0x10001000, words);
+        stack_guard(&mpu, 0x10002000, words);
         TEST_ASSERT_TRUE(stack_intact(words));
         words[i] ^= 1;
         TEST_ASSERT_FALSE(stack_intact(words));
     }
-    stack_guard(&mpu, 0x10001000, words);
+    stack_guard(&mpu, 0x10002000, words);
     words[STACK_PATTERN_WORDS] = 1; /* the stack's own */
     TEST_ASSERT_TRUE(stack_intact(words));
 }
@@ -148,7 +148,7 @@ int main(void)
     RUN_TEST(no_bit_of_a_record_may_differ);
     RUN_TEST(causes_without_a_record);
     RUN_TEST(the_stack_is_told_from_the_rest);
-    RUN_TEST(the_guard_is_4_kb_without_any_access);
+    RUN_TEST(the_guard_is_8_kb_without_any_access);
     RUN_TEST(any_word_of_the_pattern_shows);
     return UNITY_END();
 }

@@ -53,12 +53,17 @@ static size_t bench_free(void *context)
     return sizeof b->from_device - b->from_n;
 }
 
-static void bench_start(int links_n)
+static void bench_start_at(float tick_s, int links_n)
 {
-    host_device_start(&b->host, 1e-3f, links_n);
+    host_device_start(&b->host, tick_s, links_n);
     b->host.hal.line_read = bench_read;
     b->host.hal.line_write = bench_write;
     b->host.hal.line_free = bench_free;
+}
+
+static void bench_start(int links_n)
+{
+    bench_start_at(1e-3f, links_n);
 }
 
 static void bench_new(int links_n)
@@ -127,6 +132,36 @@ static void tick(void)
 __attribute__((unused)) static void ticks(int n)
 {
     for (int i = 0; i < n; i++) {
+        tick();
+    }
+}
+
+/* One value, or all of a list, staged. */
+__attribute__((unused)) static void stage(const char *name, int first, float value)
+{
+    message m = {.type = MESSAGE_PARAM_SET,
+                 .param_set = {.first = (uint16_t)first, .values_n = 1, .values = {value}}};
+    strcpy(m.param_set.name, name);
+    ask(m);
+    tick();
+}
+
+/* The NACK to the last request. */
+__attribute__((unused)) static const message_nack *refused_at_once(uint8_t reason)
+{
+    const message_nack *nack = &b->newest[MESSAGE_NACK].nack;
+    TEST_ASSERT_EQUAL_UINT16(b->request_id, nack->request_id);
+    TEST_ASSERT_EQUAL_UINT8(reason, nack->reason);
+    return nack;
+}
+
+/* Until it is answered. */
+__attribute__((unused)) static void save(void)
+{
+    ask_simply(MESSAGE_PARAM_SAVE);
+    for (int i = 0; i < 2000 && (b->newest[MESSAGE_ACK].ack.request_id != b->request_id &&
+                                 b->newest[MESSAGE_NACK].nack.request_id != b->request_id);
+         i++) {
         tick();
     }
 }

@@ -16,23 +16,6 @@ void tearDown(void)
     free(b);
 }
 
-static void set(const char *name, int first, float value)
-{
-    message m = {.type = MESSAGE_PARAM_SET,
-                 .param_set = {.first = (uint16_t)first, .values_n = 1, .values = {value}}};
-    strcpy(m.param_set.name, name);
-    ask(m);
-    tick();
-}
-
-static const message_nack *refused(uint8_t reason)
-{
-    const message_nack *nack = &b->newest[MESSAGE_NACK].nack;
-    TEST_ASSERT_EQUAL_UINT16(b->request_id, nack->request_id);
-    TEST_ASSERT_EQUAL_UINT8(reason, nack->reason);
-    return nack;
-}
-
 static void test_every_parameter_tells_what_it_is(void)
 {
     const int params_n = params_count();
@@ -53,7 +36,7 @@ static void test_every_parameter_tells_what_it_is(void)
     }
     ask((message){.type = MESSAGE_PARAM_LIST, .param_list = {.index = (uint16_t)params_n}});
     tick();
-    (void)refused(REASON_INDEX);
+    (void)refused_at_once(REASON_INDEX);
 }
 
 /* Attacks on every parameter: refused by name with value and bounds, and nothing has changed. */
@@ -66,7 +49,7 @@ static void test_bad_values_are_refused_and_the_old_ones_stay(void)
         const float bad[] = {info.min - step, info.max + step, NAN, INFINITY, -INFINITY};
         for (int k = 0; k < 5; k++) {
             const params_set before = b->host.device.params.staged;
-            set(info.name, 0, bad[k]);
+            stage(info.name, 0, bad[k]);
             const message_nack *nack = &b->newest[MESSAGE_NACK].nack;
             TEST_ASSERT_EQUAL_UINT16(b->request_id, nack->request_id);
             TEST_ASSERT_EQUAL_STRING(info.name, nack->field);
@@ -80,29 +63,29 @@ static void test_bad_values_are_refused_and_the_old_ones_stay(void)
             TEST_ASSERT_EQUAL_MEMORY(&before, &b->host.device.params.staged, sizeof before);
         }
     }
-    set("links", 0, 2.5f);
-    (void)refused(REASON_NOT_WHOLE);
-    set("nonsense", 0, 1.0f);
-    (void)refused(REASON_NAME);
-    set("spring", 300, 1.0f);
-    (void)refused(REASON_ENTRIES);
+    stage("links", 0, 2.5f);
+    (void)refused_at_once(REASON_NOT_WHOLE);
+    stage("nonsense", 0, 1.0f);
+    (void)refused_at_once(REASON_NAME);
+    stage("spring", 300, 1.0f);
+    (void)refused_at_once(REASON_ENTRIES);
 }
 
 static void test_a_set_is_taken_whole_or_not_at_all(void)
 {
     const params_set before = b->host.device.params.in_force;
-    set("spring", 0, 300.0f);
+    stage("spring", 0, 300.0f);
     TEST_ASSERT_EQUAL_MEMORY(&before, &b->host.device.params.in_force, sizeof before);
-    set("inertia", 2, 1e-6f);
-    set("damper", 2, 100.0f); /* each may be; together the damper would saw */
+    stage("inertia", 2, 1e-6f);
+    stage("damper", 2, 100.0f); /* each may be; together the damper would saw */
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
-    const message_nack *nack = refused(REASON_COMBINATION);
+    const message_nack *nack = refused_at_once(REASON_COMBINATION);
     TEST_ASSERT_EQUAL_STRING("damper", nack->field);
     TEST_ASSERT_EQUAL_INT(2, nack->entry);
     TEST_ASSERT_EQUAL_MEMORY(&before, &b->host.device.params.in_force, sizeof before);
-    set("inertia", 2, 0.2f);
-    set("damper", 2, 1.0f);
+    stage("inertia", 2, 0.2f);
+    stage("damper", 2, 1.0f);
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
     TEST_ASSERT_EQUAL_UINT8(MESSAGE_PARAM_COMMIT, b->newest[MESSAGE_ACK].ack.answered);
@@ -114,14 +97,14 @@ static void test_a_set_is_taken_whole_or_not_at_all(void)
 static void test_a_rate_that_does_not_fit_the_line_is_refused_with_the_arithmetic(void)
 {
     b->host.device.config.line_baud = 1000000;
-    set("angles_rate", 0, 1000.0f); /* 6 links: 51 bytes each, 51,000 of 80,000 a second */
+    stage("angles_rate", 0, 1000.0f); /* 6 links: 51 bytes each, 51,000 of 80,000 a second */
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
     TEST_ASSERT_EQUAL_FLOAT(1000.0f, b->host.device.params.in_force.device.angles_hz);
-    set("nodes_rate", 0, 300.0f); /* 107 bytes each: 83,100 */
+    stage("nodes_rate", 0, 300.0f); /* 107 bytes each: 83,100 */
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
-    const message_nack *nack = refused(REASON_LINE_RATE);
+    const message_nack *nack = refused_at_once(REASON_LINE_RATE);
     TEST_ASSERT_EQUAL_FLOAT(83100.0f, nack->value);
     TEST_ASSERT_EQUAL_FLOAT(80000.0f, nack->maximum);
     TEST_ASSERT_EQUAL_FLOAT(0.0f, b->host.device.params.in_force.device.nodes_hz);
@@ -132,13 +115,13 @@ static void test_what_needs_disarmed_waits_for_it(void)
     sway(300, 10, 0.05f);
     ask_simply(MESSAGE_ARM);
     sway_until_active();
-    set("links", 0, 4.0f);
+    stage("links", 0, 4.0f);
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
-    TEST_ASSERT_EQUAL_STRING("links", refused(REASON_DISARMED_ONLY)->field);
+    TEST_ASSERT_EQUAL_STRING("links", refused_at_once(REASON_DISARMED_ONLY)->field);
     ask_simply(MESSAGE_PARAM_SAVE);
     tick();
-    (void)refused(REASON_STATE);
+    (void)refused_at_once(REASON_STATE);
     ask_simply(MESSAGE_DISARM);
     ticks(2);
     ask_simply(MESSAGE_PARAM_COMMIT);
@@ -150,7 +133,7 @@ static void test_what_needs_disarmed_waits_for_it(void)
 /* The same request again is answered again and not done again. */
 static void test_requests_are_done_once(void)
 {
-    set("spring", 0, 300.0f);
+    stage("spring", 0, 300.0f);
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
     for (int again = 0; again < 3; again++) {
@@ -162,16 +145,6 @@ static void test_requests_are_done_once(void)
     TEST_ASSERT_EQUAL_UINT32(1, b->host.device.params.generation);
     TEST_ASSERT_EQUAL_UINT32(3, b->host.device.commands_repeated);
     TEST_ASSERT_EQUAL_UINT(5, b->seen_n[MESSAGE_ACK]);
-}
-
-static void save(void)
-{
-    ask_simply(MESSAGE_PARAM_SAVE);
-    for (int i = 0; i < 2000 && (b->newest[MESSAGE_ACK].ack.request_id != b->request_id &&
-                                 b->newest[MESSAGE_NACK].nack.request_id != b->request_id);
-         i++) {
-        tick();
-    }
 }
 
 static void restart(void)
@@ -187,8 +160,8 @@ static void restart(void)
 static void test_settings_outlive_a_restart(void)
 {
     TEST_ASSERT_TRUE(saved_params_bytes_max() <= DEVICE_SETTINGS_BYTES);
-    set("spring", 3, 321.0f);
-    set("pose_hold", 0, 80.0f);
+    stage("spring", 3, 321.0f);
+    stage("pose_hold", 0, 80.0f);
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
     save();
@@ -203,7 +176,7 @@ static void test_settings_outlive_a_restart(void)
  * never the defaults. */
 static void test_a_power_cut_while_saving_leaves_old_or_new(void)
 {
-    set("spring", 0, 100.0f);
+    stage("spring", 0, 100.0f);
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
     save();
@@ -211,7 +184,7 @@ static void test_a_power_cut_while_saving_leaves_old_or_new(void)
     for (long cut = 0; cut < 400; cut += 3) {
         const float old_value = b->host.device.params.in_force.rod.spring[0];
         const float new_value = 200.0f + (float)cut;
-        set("spring", 0, new_value);
+        stage("spring", 0, new_value);
         ask_simply(MESSAGE_PARAM_COMMIT);
         tick();
         b->host.flash.writes_left = cut;

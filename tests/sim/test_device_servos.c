@@ -38,10 +38,7 @@ static void inject(const char *text)
 
 static void set(const char *name, float value)
 {
-    message m = {.type = MESSAGE_PARAM_SET, .param_set = {.values_n = 1, .values = {value}}};
-    strcpy(m.param_set.name, name);
-    ask(m);
-    tick();
+    stage(name, 0, value);
     ask_simply(MESSAGE_PARAM_COMMIT);
     tick();
     TEST_ASSERT_EQUAL_UINT8(MESSAGE_PARAM_COMMIT, b->newest[MESSAGE_ACK].ack.answered);

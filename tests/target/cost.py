@@ -24,8 +24,9 @@ HEADER = """# Instructions on the Cortex-M4F, counted under QEMU, the dearest of
 # part  N  instructions  cycles  cycles without cache
 # compiler: {}
 """
-MOST = {("step", 4): 1500, ("step", 50): 7000, ("tick", 50): 40000,
-        ("tick_preset", 50): 90000}  # what the project promises
+MOST = {("step", 4): 1500, ("step", 50): 7000, ("tick", 50): 40000, ("tick_preset", 50): 90000,
+        ("elastic_step", 50): 60000, ("elastic_hostile", 50): 60000}  # what the project promises
+WORST_STEP = {"contour": "step_hold_2", "elastic": "elastic_hostile", "elastic_4ms": "elastic_hostile_4ms"}
 TOLERANCE = 0.03
 Count = collections.namedtuple("Count", "instructions cycles cold", defaults=(0, 0))
 
@@ -44,22 +45,28 @@ def parse(text):
     return counts
 
 
+def parse_budgets(text):
+    """(model, N) -> cycles: what the device takes a tick for (tick_budget.h)."""
+    lines = re.findall(r"^# budget (\w+) (\d+) (\d+)", text, re.MULTILINE)
+    return {(model, int(n)): int(most) for model, n, most in lines}
+
+
 def measure(qemu, program, plugin):
-    """(part, N) -> Count, as the program tells them; with what the plugin has seen, cycles too."""
+    """(part, N) -> Count, as the program tells them, with what the plugin has seen, cycles too; and the budgets."""
     if not plugin:
-        return parse(emulator.run(qemu, program, count_instructions=True))
+        return parse(emulator.run(qemu, program, count_instructions=True)), {}
     image = cycles.Image(program)
     with tempfile.NamedTemporaryFile() as file:
         marks = ",".join(f"{word}={image.symbols['cost_' + word]:#x}" for word in ("begin", "end", "tell"))
-        told = parse(emulator.run(qemu, program, count_instructions=True, plugin=f"{plugin},out={file.name},{marks}"))
+        text = emulator.run(qemu, program, count_instructions=True, plugin=f"{plugin},out={file.name},{marks}")
         regions = cycles.read_regions(file.name)
-    counts = {}
+    told, counts = parse(text), {}
     for (key, count), tallies in zip(told.items(), regions):
         mix = image.cost(tallies)
         if count.instructions and mix.instructions:  # the dearest has the mix of them all
             counts[key] = Count(count.instructions, *(round(count.instructions * each / mix.instructions)
                                                       for each in (mix.cycles, mix.cold)))
-    return counts
+    return counts, parse_budgets(text)
 
 
 def judge(counts, stored, same_compiler):
@@ -76,6 +83,19 @@ def judge(counts, stored, same_compiler):
     return failures
 
 
+def judge_budgets(counts, budgets):
+    """The device's own idea of its dearest tick lies between the two estimates of it. Returns how often not."""
+    failures = 0
+    for (model, n), budget in budgets.items():
+        full, step, worst = (counts[part, n] for part in ("tick_full", "step", WORST_STEP[model]))
+        least, most = (getattr(full, kind) - getattr(step, kind) + getattr(worst, kind) for kind in ("cycles", "cold"))
+        good = least <= budget <= most
+        failures += not good
+        print(f"{model:18} N = {n:2}  {budget:6} cycles are its budget, {least} ... {most} estimated"
+              f"{'' if good else '   <-- FAILED'}")
+    return failures
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--qemu", required=True)
@@ -83,18 +103,21 @@ def main():
     parser.add_argument("--plugin", help="mix_plugin.c, compiled; needed to tell cycles")
     parser.add_argument("--update", action="store_true", help="write what is measured to tests/data, and the table")
     choices = parser.parse_args()
-    counts = {}
+    counts, budgets = {}, {}
     for program in choices.program:
-        counts |= measure(choices.qemu, program, choices.plugin)
+        told = measure(choices.qemu, program, choices.plugin)
+        counts |= told[0]
+        budgets |= told[1]
     if choices.update:
         rows = "".join(f"{part} {n} {c.instructions} {c.cycles} {c.cold}\n" for (part, n), c in counts.items())
         STORED.write_text(HEADER.format(compiler()) + rows, encoding="utf-8")
-        cost_table.write(counts, compiler())
+        cost_table.write(counts, budgets, compiler())
     text = STORED.read_text(encoding="utf-8")
     stored = parse(text)
     same_compiler = compiler() in text
     failures = judge(counts, stored, same_compiler)
     failures += sum(key not in counts for key in MOST)
+    failures += judge_budgets(counts, budgets)
     print(f"{'the same compiler' if same_compiler else 'another compiler: only the upper bounds count'}; "
           f"{len(stored)} counts, {failures} failed")
     return 1 if failures or not stored else 0

@@ -25,6 +25,18 @@ PARTS = [  # name in the counts, what it is
     ("tick_full", "the same, with HEARTBEAT and STATS"),
     ("tick_preset", "the whole tick, and the rod becomes another one in it"),
 ]
+ELASTIC = [
+    ("elastic_step", "one step"),
+    ("elastic_hostile", "one step in a motion no hand can make: three of Newton's steps, not one"),
+    ("elastic_hostile_4ms", "the same in a tick of 4 ms, which is several steps"),
+    ("elastic_with_force", "one step with a force on it"),
+    ("elastic_nodes", "its nodes"),
+    ("elastic_set_params", "other parameters"),
+    ("elastic_tick", "**the whole tick**"),
+    ("elastic_tick_full", "the same, with HEARTBEAT and STATS"),
+    ("elastic_tick_preset", "the whole tick, and the rod becomes another one in it"),
+]
+BUDGETS = [("contour", "contour"), ("elastic", "elastic, a tick of 1 ms"), ("elastic_4ms", "elastic, a tick of 4 ms")]
 INTERRUPTS = {
     "interrupt_byte_in": "a byte has come in, on the line or the bus",
     "interrupt_byte_out": "a byte may go out",
@@ -67,7 +79,19 @@ def interrupts(counts):
             yield f"| {INTERRUPTS[name]} | {c.instructions:,} · {c.cycles:,} … {c.cold:,} |"
 
 
-def write(counts, compiler):
+def budget_table(budgets):
+    yield from ("", "## What the device takes a tick for", "",
+                "Cycles, HEARTBEAT and STATS and the rod's worst step in it (`firmware/app/tick_budget.c`). A rod that",
+                "needs more than interrupts leave of a tick, 90 % (a servo bus: 70 %), is refused. The test holds",
+                "these numbers between the two estimates.", "",
+                "| | " + " | ".join(f"N = {n}" for n in LINKS_N) + " |", "|---|" + "---|" * len(LINKS_N))
+    for model, meaning in BUDGETS:
+        if (model, LINKS_N[0]) in budgets:
+            yield f"| {meaning} | " + " | ".join(f"{budgets[model, n]:,}" for n in LINKS_N) + " |"
+
+
+def write(counts, budgets, compiler):
     lines = [HEAD.format(compiler=compiler), "## One tick: instructions · cycles", "", *table(counts, PARTS), "",
-             *time(counts), *interrupts(counts), "", "## The rod alone", "", *table(counts, MORE)]
+             *time(counts), *interrupts(counts), "", "## The rod alone", "", *table(counts, MORE),
+             "", "## The elastic rod", "", *table(counts, ELASTIC), *budget_table(budgets)]
     PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")

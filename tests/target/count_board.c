@@ -225,12 +225,13 @@ static void tick_with_pose(void)
     device_tick(&counted.device);
 }
 
-bool count_board_follow(int links_n)
+bool count_board_follow(int model, int links_n)
 {
     params_refusal why;
     start_device(links_n);
-    if (!set("spring", 2000.0f) || !set("smoothing", 50.0f) || !set("servo_baud", 4e6f) ||
-        !set("angles_rate", 1000.0f) || !params_commit(&counted.device.params, true, &why) ||
+    if (!set("model", (float)model) || !set("spring", 2000.0f) || !set("smoothing", 50.0f) ||
+        !set("servo_baud", 4e6f) || !set("angles_rate", 1000.0f) ||
+        !params_commit(&counted.device.params, true, &why) ||
         !device_apply_params(&counted.device, &counted.device.params.in_force, true, &why)) {
         printf("parameters refused: %s\n", why.text);
         return false;

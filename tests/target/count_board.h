@@ -18,9 +18,9 @@ typedef struct {
 } count_board;
 extern count_board counted;
 
-/* Two servos a link on a bus of 4 Mbaud, a pose and ANGLES every tick: from the start until it is ACTIVE. False, and
- * says why, if that is not to be. */
-bool count_board_follow(int links_n);
+/* Two servos a link on a bus of 4 Mbaud, a pose and ANGLES every tick: from the start until it is ACTIVE. model:
+ * ROD_MODEL_... False, and says why, if that is not to be. */
+bool count_board_follow(int model, int links_n);
 
 /* From one tick to the next: what was sent has left, the servos have got theirs, and their answers are there. */
 void count_board_pass(void);

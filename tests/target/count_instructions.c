@@ -21,6 +21,15 @@ static rod_pose hand_at(int tick)
                       {0.0f, tilt.sin, 0.0f, tilt.cos}};
 }
 
+/* As no hand can: from side to side by 0.1 m and 0.4 rad, a tick each. All of Newton's steps are taken. */
+static rod_pose hostile_at(int tick)
+{
+    const float side = (tick & 1) != 0 ? 1.0f : -1.0f;
+    const trig_pair tilt = trig_sincos(0.1f * side);
+    return (rod_pose){{0.05f * side, 0.01f * (float)(tick % 7), -0.03f * side},
+                      {0.0f, tilt.sin, 0.0f, tilt.cos}};
+}
+
 static void no_force(const vec3 *nodes_m, int nodes_n, vec3 *forces_newton, void *context)
 {
     (void)nodes_m, (void)nodes_n, (void)forces_newton, (void)context;
@@ -52,8 +61,7 @@ static void do_part(part which, const rod_pose *base)
     }
 }
 
-/* A hundred ticks of a moving hand. */
-static void count(const char *name, part which, int links_n, float smoothing, int hold_n)
+static void contour_rod(int links_n, float smoothing, int hold_n)
 {
     rod_params_defaults(&params);
     params.links_n = links_n;
@@ -62,6 +70,25 @@ static void count(const char *name, part which, int links_n, float smoothing, in
         params.spring[i] = 2000.0f;
         params.smoothing[i] = smoothing;
     }
+}
+
+/* A soft rod of 0.6 m, whatever its links: it swings out by most of its length. */
+static void elastic_rod(int links_n)
+{
+    rod_params_defaults(&params);
+    params.model = ROD_MODEL_ELASTIC;
+    params.links_n = links_n;
+    for (int i = 0; i < links_n; i++) {
+        params.length_m[i] = 0.6f / (float)links_n;
+        params.mass_kg[i] = 0.2f / (float)links_n;
+        params.spring[i] = 0.2f * (float)links_n;
+        params.damper[i] = 0.001f * (float)links_n;
+    }
+}
+
+/* A hundred ticks of a moving hand. */
+static void count(const char *name, part which, rod_pose (*hand_at)(int tick))
+{
     rod_init(&subject, &params, NULL);
     rod_set_force(&subject, which == STEP_WITH_FORCE ? no_force : NULL, NULL);
     for (int tick = 0; tick < 102; tick++) {
@@ -77,7 +104,31 @@ static void count(const char *name, part which, int links_n, float smoothing, in
             rod_step(&subject, &base);
         }
     }
-    cost_tell(name, links_n);
+    cost_tell(name, params.links_n);
+}
+
+static void count_contour(int links_n)
+{
+    for (part which = 0; which < PARTS_N; which++) {
+        contour_rod(links_n, 50.0f, 1);
+        count(PART_NAMES[which], which, hand_at);
+    }
+    contour_rod(links_n, 0.0f, 1);
+    count("step_no_smoothing", STEP, hand_at);
+    contour_rod(links_n, 50.0f, 2);
+    count("step_hold_2", STEP, hand_at);
+}
+
+static void count_elastic(int links_n)
+{
+    elastic_rod(links_n);
+    count("elastic_step", STEP, hand_at);
+    count("elastic_hostile", STEP, hostile_at);
+    count("elastic_with_force", STEP_WITH_FORCE, hand_at);
+    count("elastic_nodes", NODES, hand_at);
+    count("elastic_set_params", SET_PARAMS, hand_at);
+    params.tick_s = 4e-3f; /* in several steps */
+    count("elastic_hostile_4ms", STEP, hostile_at);
 }
 
 int main(void)
@@ -85,12 +136,8 @@ int main(void)
     static const int LINKS_N[] = {4, 10, 20, 50};
     cost_start();
     for (int i = 0; i < 4; i++) {
-        const int n = LINKS_N[i];
-        for (part which = 0; which < PARTS_N; which++) {
-            count(PART_NAMES[which], which, n, 50.0f, 1);
-        }
-        count("step_no_smoothing", STEP, n, 0.0f, 1);
-        count("step_hold_2", STEP, n, 50.0f, 2);
+        count_contour(LINKS_N[i]);
+        count_elastic(LINKS_N[i]);
     }
     return 0;
 }

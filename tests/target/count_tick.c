@@ -5,6 +5,7 @@
 
 #include "cost.h"
 #include "count_board.h"
+#include "tick_budget.h"
 
 enum { TICKS_N = 100, NEVER = 100000 };
 
@@ -30,7 +31,7 @@ static void count_ticks(const char *name, int links_n, uint32_t telemetry_ticks)
 }
 
 /* Ticks in which the rod becomes another one: all of the parameters are checked, and the blend begins. */
-static void count_presets(int links_n)
+static void count_presets(const char *name, int links_n)
 {
     static const char *const NAMES[] = {"foil", "whip", "ribbon"};
     const uint32_t refused = d->commands_refused;
@@ -45,7 +46,7 @@ static void count_presets(int links_n)
         device_tick(d);
         cost_end();
     }
-    cost_tell("tick_preset", links_n);
+    cost_tell(name, links_n);
     if (d->commands_refused != refused) {
         printf("presets were refused\n");
     }
@@ -145,24 +146,45 @@ static void count_interrupts(void)
     cost_tell("interrupt_tick", 0);
 }
 
+static void tell_budget(const char *name, int model, int links_n, float tick_s)
+{
+    printf("# budget %s %d %lu\n", name, links_n,
+           (unsigned long)tick_budget_cycles(model, links_n, tick_s));
+}
+
+/* The same device with the other model; its parts but for the step are the same. */
+static bool count_model(int model, int links_n)
+{
+    const bool elastic = model == ROD_MODEL_ELASTIC;
+    if (!count_board_follow(model, links_n)) {
+        return false;
+    }
+    count_ticks(elastic ? "elastic_tick" : "tick", links_n, NEVER);
+    count_ticks(elastic ? "elastic_tick_full" : "tick_full", links_n, 0);
+    count_presets(elastic ? "elastic_tick_preset" : "tick_preset", links_n);
+    if (d->supervisor.state != SUPERVISOR_ACTIVE) {
+        printf("no longer ACTIVE but %d\n", (int)d->supervisor.state);
+        return false;
+    }
+    for (part which = 0; which < PARTS_N && !elastic; which++) {
+        count_part(which, links_n);
+    }
+    tell_budget(elastic ? "elastic" : "contour", model, links_n, 1e-3f);
+    if (elastic) {
+        tell_budget("elastic_4ms", model, links_n, 4e-3f);
+    }
+    return true;
+}
+
 int main(void)
 {
     static const int LINKS_N[] = {4, 10, 20, 50};
     cost_start();
     for (int i = 0; i < 4; i++) {
-        const int n = LINKS_N[i];
-        if (!count_board_follow(n)) {
-            return 1;
-        }
-        count_ticks("tick", n, NEVER);
-        count_ticks("tick_full", n, 0);
-        count_presets(n);
-        if (d->supervisor.state != SUPERVISOR_ACTIVE) {
-            printf("no longer ACTIVE but %d\n", (int)d->supervisor.state);
-            return 1;
-        }
-        for (part which = 0; which < PARTS_N; which++) {
-            count_part(which, n);
+        for (int model = 0; model < ROD_MODEL_COUNT; model++) {
+            if (!count_model(model, LINKS_N[i])) {
+                return 1;
+            }
         }
     }
     count_interrupts();

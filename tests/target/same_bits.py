@@ -24,6 +24,16 @@ GENERATED = [
     ("linear.txt", ["--set", "links=50", "--set", "smoothing=50", "--set", "spring=2000"]),
     ("shaking-flips.txt", ["--set", "scheme=paper", "--rate", "2000"]),
 ]
+SOFT = [word for value in ("model=elastic", "length=0.06", "mass=0.02", "spring=2", "damper=0.01")
+        for word in ("--set", value)]
+GENERATED += [
+    ("circular.txt", [*SOFT, "--set", "links=10"]),
+    ("shaking-gaps.txt", [*SOFT, "--set", "links=20", "--rate", "100"]),  # ten steps a tick
+    ("shaking.txt", [*SOFT, "--set", "links=20", "--set", "spring=0", "--scale", "20"]),  # lengths are restored
+    ("star-stops.txt", [*SOFT, "--set", "links=3", "--set", "gravity=0", "--set", "drag=0.1"]),
+    ("linear.txt", [*SOFT, "--set", "links=50", "--rate", "500"]),
+    ("shaking.txt", [*SOFT, "--set", "links=1"]),
+]
 RECORDED = [["--set", "links=4"], ["--set", "links=50", "--set", "spring=2000"]]
 
 

@@ -204,6 +204,8 @@ static void list_preset(fake_device *d, const message *m)
 
 void fake_tell_stats(fake_device *d, uint16_t request_id)
 {
+    fake_send(d, &(message){.type = MESSAGE_ROD_STATS,
+                            .rod_stats = {.request_id = request_id, .lengths_restored = 3}});
     message answer = {.type = MESSAGE_STATS, .stats = d->stats};
     answer.stats.request_id = request_id;
     answer.stats.uptime_ms = (fake_now_us() - d->start_us) / 1000;

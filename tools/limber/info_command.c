@@ -68,6 +68,7 @@ static void print_info(const session *s, const message_stats *stats)
     printf("clock      known to within %d us\n", clock_sync_error_us(&s->clock, limber_now_us()));
     printf("counters since the start (those not 0)\n");
     stats_each(stats, print_counter, NULL);
+    print_counter(NULL, "lengths_restored", s->rod_stats.lengths_restored);
 }
 
 static void add_counter(void *context, const char *name, uint32_t value)
@@ -125,7 +126,9 @@ static cJSON *info_json(const session *s, const message_stats *stats)
     if (s->boot_known) {
         cJSON_AddItemToObject(json, "boot", boot_json(&s->boot));
     }
-    stats_each(stats, add_counter, cJSON_AddObjectToObject(json, "counters"));
+    cJSON *counters = cJSON_AddObjectToObject(json, "counters");
+    stats_each(stats, add_counter, counters);
+    add_counter(counters, "lengths_restored", s->rod_stats.lengths_restored);
     return json;
 }
 

@@ -196,6 +196,9 @@ static void take_message(session *s, const message *m, const frame *f, uint64_t 
         s->heartbeat = m->heartbeat;
         s->heartbeat_known = true;
         break;
+    case MESSAGE_ROD_STATS:
+        s->rod_stats = m->rod_stats;
+        break;
     case MESSAGE_TIMESYNC_ANSWER:
         clock_sync_add(&s->clock, m->timesync_answer.t1_us, m->timesync_answer.t2_us,
                        m->timesync_answer.t3_us, at_us);

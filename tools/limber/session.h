@@ -39,6 +39,7 @@ typedef struct {
     message_hello device;
     message_boot_report boot;
     message_heartbeat heartbeat;
+    message_rod_stats rod_stats; /* all zero where the device has none */
     bool boot_known, heartbeat_known;
     clock_sync clock;
 

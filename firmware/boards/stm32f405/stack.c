@@ -1,7 +1,7 @@
 /* stack.c - see stack.h. */
 #include "stack.h"
 
-enum { PATTERN = 0x5AFE57AC, GUARD_SIZE = 11 /* 2^(11 + 1) bytes */ };
+enum { PATTERN = 0x5AFE57AC, GUARD_SIZE = 12 /* 2^(11 + 1) bytes */ };
 
 _Static_assert(STACK_GUARD_BYTES == 2 << GUARD_SIZE, "the region's size is the guard's");
 

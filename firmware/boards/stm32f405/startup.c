@@ -35,11 +35,11 @@ __attribute__((naked)) void reset_handler(void)
                      "str r1, [r0]        \n"
                      "dsb                 \n"
                      "isb                 \n"
-                     "b start             \n");
+                     "b start_program    \n");
 }
 
-__attribute__((used)) static void start(void) __asm__("start");
-static void start(void)
+__attribute__((used)) static void start_program(void) __asm__("start_program");
+static void start_program(void)
 {
     /* the linker script's symbols bound one object each, which no checker can know */
     // cppcheck-suppress comparePointers

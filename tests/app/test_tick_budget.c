@@ -1,0 +1,124 @@
+/* test_tick_budget.c - which rods fit a tick, and how one that does not is refused. The constants themselves are held
+ * against counted instructions by tests/target/cost.py. */
+#include "tick_budget.h"
+
+#include <string.h>
+
+#include "messages.h"
+#include "servo_types.h"
+#include "unity.h"
+
+enum { BOARD_HZ = 168000000, OSCILLATOR_HZ = 16000000 };
+
+static params all;
+static params_refusal why;
+static char text[MESSAGES_TEXT_MAX + 1];
+
+void setUp(void)
+{
+    params_init(&all);
+    memset(&why, 0, sizeof why);
+    memset(text, 'x', sizeof text);
+}
+
+void tearDown(void) {}
+
+static bool fits(int model, int links_n, int servo_kind, float tick_s, uint32_t clock_hz)
+{
+    all.in_force.rod.model = model;
+    all.in_force.rod.links_n = links_n;
+    all.in_force.rod.tick_s = tick_s;
+    all.in_force.device.servo_kind = (float)servo_kind;
+    return tick_budget_check(&all.in_force, clock_hz, text, &why);
+}
+
+/* The most links that fit; every number up to there does, and none beyond. */
+static int links_max(int model, int servo_kind, float tick_s, uint32_t clock_hz)
+{
+    int most = 0;
+    for (int n = 1; n <= ROD_MAX_LINKS; n++) {
+        if (fits(model, n, servo_kind, tick_s, clock_hz)) {
+            TEST_ASSERT_EQUAL_INT(n - 1, most);
+            most = n;
+        }
+    }
+    return most;
+}
+
+static void what_fits_the_board(void)
+{
+    static const struct {
+        int model, servo_kind;
+        float tick_s;
+        uint32_t clock_hz;
+        int links_max;
+    } ROWS[] = {
+        {ROD_MODEL_CONTOUR, SERVOS_BUS, 1e-3f, BOARD_HZ, 64},
+        {ROD_MODEL_CONTOUR, SERVOS_BUS, 5e-4f, BOARD_HZ, 12},
+        {ROD_MODEL_CONTOUR, SERVOS_NONE, 1e-2f, OSCILLATOR_HZ, 64},
+        {ROD_MODEL_ELASTIC, SERVOS_NONE, 1e-3f, BOARD_HZ, 41},
+        {ROD_MODEL_ELASTIC, SERVOS_PWM, 1e-3f, BOARD_HZ, 41},
+        {ROD_MODEL_ELASTIC, SERVOS_BUS, 1e-3f, BOARD_HZ, 27},
+        {ROD_MODEL_ELASTIC, SERVOS_BUS, 2e-3f, BOARD_HZ, 64},
+        {ROD_MODEL_ELASTIC, SERVOS_NONE, 1e-2f, OSCILLATOR_HZ, 5},
+        {ROD_MODEL_ELASTIC, SERVOS_NONE, 1e-3f, OSCILLATOR_HZ, 0},
+        {ROD_MODEL_ELASTIC, SERVOS_BUS, 1e-3f, 0, 64}, /* nobody knows the clock */
+    };
+    for (size_t i = 0; i < sizeof ROWS / sizeof ROWS[0]; i++) {
+        const int most = ROWS[i].links_max < ROD_MAX_LINKS ? ROWS[i].links_max : ROD_MAX_LINKS;
+        TEST_ASSERT_EQUAL_INT(
+            most, links_max(ROWS[i].model, ROWS[i].servo_kind, ROWS[i].tick_s, ROWS[i].clock_hz));
+    }
+}
+
+static void a_refusal_has_the_arithmetic(void)
+{
+    TEST_ASSERT_FALSE(fits(ROD_MODEL_ELASTIC, 50, SERVOS_BUS, 1e-3f, BOARD_HZ));
+    TEST_ASSERT_EQUAL_INT(REASON_COMBINATION, why.reason);
+    TEST_ASSERT_EQUAL_STRING("links", why.field);
+    TEST_ASSERT_EQUAL_INT(-1, why.entry);
+    TEST_ASSERT_EQUAL_FLOAT(50.0f, why.value);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, why.min);
+    TEST_ASSERT_EQUAL_FLOAT(27.0f, why.max);
+    /* 174,000 cycles; 70 % of a tick */
+    TEST_ASSERT_EQUAL_STRING("elastic, 50 links: 1036 us at 168 MHz, a tick of 1000 has 700: "
+                             "fewer links, longer tick",
+                             why.text);
+}
+
+/* The longest that numbers can get is told whole. */
+static void the_longest_text_has_room(void)
+{
+    TEST_ASSERT_FALSE(fits(ROD_MODEL_ELASTIC, 256, SERVOS_NONE, 2e-2f, OSCILLATOR_HZ));
+    TEST_ASSERT_EQUAL_STRING("elastic, 256 links: 530106 us at 16 MHz, a tick of 20000 has 18000: "
+                             "fewer links, longer tick",
+                             why.text);
+}
+
+static void needs_grow_with_the_links_and_the_clock_divides_them(void)
+{
+    all.in_force.rod.model = ROD_MODEL_ELASTIC;
+    all.in_force.rod.links_n = 20;
+    const tick_budget fast = tick_budget_of(&all.in_force, BOARD_HZ);
+    const tick_budget slow = tick_budget_of(&all.in_force, BOARD_HZ / 2);
+    TEST_ASSERT_UINT32_WITHIN(1, 2 * fast.needed_us, slow.needed_us);
+    TEST_ASSERT_EQUAL_UINT32(fast.given_us, slow.given_us);
+    TEST_ASSERT_EQUAL_UINT32(900, fast.given_us);
+    for (int model = 0; model < ROD_MODEL_COUNT; model++) {
+        const uint32_t a_link =
+            tick_budget_cycles(model, 11, 1e-3f) - tick_budget_cycles(model, 10, 1e-3f);
+        TEST_ASSERT_TRUE(a_link > 0);
+        TEST_ASSERT_EQUAL_UINT32(tick_budget_cycles(model, 10, 1e-3f) + 30 * a_link,
+                                 tick_budget_cycles(model, 40, 1e-3f));
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(what_fits_the_board);
+    RUN_TEST(a_refusal_has_the_arithmetic);
+    RUN_TEST(the_longest_text_has_room);
+    RUN_TEST(needs_grow_with_the_links_and_the_clock_divides_them);
+    return UNITY_END();
+}
