@@ -6,10 +6,11 @@
 #include "params_text.h"
 #include "sim.h"
 
-enum { OPTION_PRESET = 1, OPTION_SET, OPTION_LIST };
+enum { OPTION_PRESET = 1, OPTION_MODEL, OPTION_SET, OPTION_LIST };
 
 static const char EXAMPLES[] = "  limber-sim params --preset whip > my-whip.ini\n"
                                "  limber-sim params --preset foil --set links=20 --set spring=400\n"
+                               "  limber-sim params --preset foil --model elastic > my-foil.ini\n"
                                "  limber-sim params --list\n";
 
 static int run(poptContext context, params_text *text)
@@ -21,6 +22,8 @@ static int run(poptContext context, params_text *text)
         int result = SIM_OK;
         if (option == OPTION_PRESET) {
             result = params_text_preset(text, value);
+        } else if (option == OPTION_MODEL) {
+            result = params_text_model(text, value);
         } else if (option == OPTION_SET) {
             result = params_text_set(text, value);
         } else if (option == OPTION_LIST) {
@@ -57,6 +60,8 @@ int sim_params_command(int argc, const char **argv)
 {
     const struct poptOption table[] = {
         {"preset", 'p', POPT_ARG_STRING, NULL, OPTION_PRESET, "start from a preset", "NAME"},
+        {"model", 'm', POPT_ARG_STRING, NULL, OPTION_MODEL, "the mathematics: contour or elastic",
+         "NAME"},
         {"set", 's', POPT_ARG_STRING, NULL, OPTION_SET, "change a key; as often as you like",
          "KEY=VALUE"},
         {"list", 'l', POPT_ARG_NONE, NULL, OPTION_LIST, "list the presets", NULL},

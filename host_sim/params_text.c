@@ -9,9 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "params.h"
 #include "sim.h"
 
-static bool is_settable(const rod_field *field)
+bool params_text_is_settable(const rod_field *field)
 {
     return strcmp(field->name, "tick") != 0; /* the tick is the rate's */
 }
@@ -38,7 +39,7 @@ static int unknown_key(const char *origin, const char *key)
 {
     char names[200] = "";
     for (int i = 0; i < ROD_FIELDS_N; i++) {
-        if (is_settable(&rod_fields[i])) {
+        if (params_text_is_settable(&rod_fields[i])) {
             strcat(strcat(names, *names == '\0' ? "" : ", "), rod_fields[i].name);
         }
     }
@@ -90,7 +91,7 @@ static int take(params_text *text, const char *origin, const char *key, const ch
                 bool more)
 {
     const rod_field *field = rod_field_find(key);
-    if (field == NULL || !is_settable(field)) {
+    if (field == NULL || !params_text_is_settable(field)) {
         return unknown_key(origin, key);
     }
     params_entry *entry = &text->entries[index_of(field)];
@@ -118,6 +119,11 @@ static int take(params_text *text, const char *origin, const char *key, const ch
         result = sim_complain("%s: %s has no value", origin, key);
     }
     return result;
+}
+
+int params_text_model(params_text *text, const char *name)
+{
+    return take(text, "--model", "model", name, false);
 }
 
 int params_text_set(params_text *text, const char *key_equals_value)
@@ -183,6 +189,12 @@ static char *next_ini_line(char *buffer, int size, void *context)
     return buffer;
 }
 
+/* What limber params list --ini writes beside the rod's keys: nothing to a replay. */
+static bool is_devices_own(const char *name)
+{
+    return params_find(name) >= ROD_FIELDS_N;
+}
+
 static int take_from_ini(void *context, const char *section, const char *name, const char *value)
 {
     ini_reading *reading = context;
@@ -192,11 +204,13 @@ static int take_from_ini(void *context, const char *section, const char *name, c
     reading->in_value = true;
     char origin[160];
     snprintf(origin, sizeof origin, "%.140s:%ld", reading->path, reading->line);
-    reading->result =
-        strcmp(section, "rod") == 0
-            ? take(reading->text, origin, name, value, reading->continued)
-            : sim_complain("%s: '%.40s' stands in section [%.40s]; limber reads only [rod]", origin,
-                           name, section);
+    if (strcmp(section, "rod") != 0) {
+        reading->result =
+            sim_complain("%s: '%.40s' stands in section [%.40s]; limber reads only [rod]", origin,
+                         name, section);
+    } else if (!is_devices_own(name)) {
+        reading->result = take(reading->text, origin, name, value, reading->continued);
+    }
     return reading->result == SIM_OK;
 }
 
@@ -240,17 +254,21 @@ static int explain(const params_text *text, const rod_refusal *why, const rod_pa
     return sim_complain("rod: joint %d: %s", why->joint + 1, rod_error_text(why->error));
 }
 
+/* The first value written for a key, or what it is without. */
+static int first_of(const params_text *text, const char *key, int otherwise)
+{
+    const params_entry *entry = &text->entries[index_of(rod_field_find(key))];
+    return entry->values_n > 0 ? (int)entry->values[0] : otherwise;
+}
+
 int params_text_resolve(const params_text *text, double rate_hz, rod_params *params)
 {
-    const params_entry *links = &text->entries[index_of(rod_field_find("links"))];
     if (text->preset != NULL) {
-        const int links_n = links->values_n > 0 ? (int)links->values[0] : text->preset->links_n;
-        rod_preset_fill(text->preset, links_n, params);
+        rod_preset_fill(text->preset, first_of(text, "model", ROD_MODEL_CONTOUR),
+                        first_of(text, "links", text->preset->links_n), params);
     } else {
         rod_params_defaults(params);
-        if (links->values_n > 0) {
-            params->links_n = (int32_t)links->values[0];
-        }
+        params->links_n = first_of(text, "links", params->links_n);
     }
     params->tick_s = (float)(1.0 / rate_hz);
     for (int i = 0; i < ROD_FIELDS_N; i++) {
@@ -259,6 +277,10 @@ int params_text_resolve(const params_text *text, double rate_hz, rod_params *par
         if (entry->values_n > 1 && entry->values_n != params->links_n) {
             return sim_complain("%s: %s has %d values for %d links; give one, or one per joint",
                                 entry->origin, field->name, entry->values_n, params->links_n);
+        }
+        if (strcmp(entry->origin, "--set") == 0 && !rod_field_is_read(field, params->model)) {
+            return sim_complain("--set %s: the %s model does not read it", field->name,
+                                rod_field_find("model")->choices[params->model]);
         }
         const int entries_n = field->kind == ROD_FIELD_PER_JOINT ? ROD_MAX_LINKS : 1;
         for (int joint = 0; joint < entries_n && entry->values_n > 0; joint++) {
@@ -269,61 +291,4 @@ int params_text_resolve(const params_text *text, double rate_hz, rod_params *par
     rod trial; /* whatever the rod would refuse is refused here, in words */
     rod_refusal why;
     return rod_init(&trial, params, &why) == ROD_OK ? SIM_OK : explain(text, &why, params);
-}
-
-/* The shortest decimal that reads back to the same float. */
-static void write_number(float value, FILE *out)
-{
-    char text[32];
-    for (int digits = 6; digits <= 9; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
-        const float back = strtof(text, NULL);
-        if (!(back < value || back > value)) {
-            break;
-        }
-    }
-    fputs(text, out);
-}
-
-static void write_field(const rod_field *field, const rod_params *params, FILE *out)
-{
-    fprintf(out, "\n# %s%s%s%s\n", field->what,
-            *field->symbol == '\0' ? "" : " (paper: ", field->symbol,
-            *field->symbol == '\0' ? "" : ")");
-    if (field->kind == ROD_FIELD_CHOICE) {
-        fprintf(out, "# one of:");
-        for (int i = 0; i <= (int)field->max; i++) {
-            fprintf(out, " %s", field->choices[i]);
-        }
-        fprintf(out, "\n%s = %s\n", field->name,
-                field->choices[(int)rod_field_get(field, params, 0)]);
-        return;
-    }
-    fprintf(out, "# %g ... %g%s%s%s\n%s =", (double)field->min, (double)field->max,
-            *field->unit == '\0' ? "" : " ", field->unit,
-            field->kind == ROD_FIELD_PER_JOINT ? ", one value or one per joint" : "", field->name);
-    int values_n = field->kind == ROD_FIELD_PER_JOINT ? params->links_n : 1;
-    bool same = true;
-    for (int joint = 1; joint < values_n; joint++) {
-        same =
-            same &&
-            !(fabsf(rod_field_get(field, params, joint) - rod_field_get(field, params, 0)) > 0.0f);
-    }
-    values_n = same ? 1 : values_n;
-    for (int joint = 0; joint < values_n; joint++) {
-        const bool wrap = joint > 0 && joint % 8 == 0; /* the reader's lines are short */
-        fputs(wrap ? "\n    " : " ", out);
-        write_number(rod_field_get(field, params, joint), out);
-    }
-    fprintf(out, "\n");
-}
-
-void params_text_write_ini(const rod_params *params, const char *title, FILE *out)
-{
-    fprintf(out, "# %s\n# Read by: limber-sim replay TRACK --params THIS_FILE\n\n[rod]\n", title);
-    for (int i = 0; i < ROD_FIELDS_N; i++) {
-        if (is_settable(&rod_fields[i])) {
-            write_field(&rod_fields[i], params, out);
-        }
-    }
 }

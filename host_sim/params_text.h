@@ -2,6 +2,7 @@
 #ifndef LIMBER_PARAMS_TEXT_H
 #define LIMBER_PARAMS_TEXT_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 #include "rod.h"
@@ -19,15 +20,23 @@ typedef struct {
     params_entry entries[ROD_FIELDS_N];
 } params_text;
 
-/* Each returns SIM_OK, or SIM_BAD_INPUT after one line with place, value and bounds. */
+/* Each returns SIM_OK, or SIM_BAD_INPUT after one line with place, value and bounds. A file may hold what is
+ * the device's alone (servo_kind, ...) and not the rod's: that is passed over. */
 int params_text_preset(params_text *text, const char *name);
 int params_text_read_ini(params_text *text, const char *path);
 int params_text_set(params_text *text, const char *key_equals_value);
+int params_text_model(params_text *text, const char *name);
 
 /* Everything together at this tick, checked as the rod itself will check it. */
 int params_text_resolve(const params_text *text, double rate_hz, rod_params *params);
 
-/* A complete, commented INI file that reads back to the same parameters. */
+/* All fields but the tick, which is the rate's. */
+bool params_text_is_settable(const rod_field *field);
+
+/* The unit of a field as a model reads it: drag is N m s at a joint to contour, N s/m at a node to elastic. */
+const char *params_text_unit(const rod_field *field, int32_t model);
+
+/* A commented INI file of all that the rod's model reads; it reads back to the same rod. */
 void params_text_write_ini(const rod_params *params, const char *title, FILE *out);
 
 #endif

@@ -83,6 +83,7 @@ static int run_ticks(replay *r, rod *rod, float *step_us)
             show_progress(n + 1, r->ticks_n);
         }
     }
+    r->restored_n = (long)rod_restored_n(rod);
     return SIM_OK;
 }
 
@@ -91,22 +92,22 @@ static void sum_up_joints(replay *r)
     for (int joint = 0; joint < r->params.links_n; joint++) {
         replay_joint *j = &r->joints[joint];
         const double limit = (double)r->params.limit_rad[joint];
-        long on_stop = 0;
+        long at_limit = 0;
         double squares[2] = {0.0, 0.0};
         for (long n = 0; n < r->ticks_n; n++) {
-            bool stopped = false;
+            bool reached = false;
             for (int axis = 0; axis < 2; axis++) {
                 const double angle = fabs((double)replay_angles(r, n)[2 * joint + axis]);
                 j->peak_rad[axis] = fmax(j->peak_rad[axis], angle);
                 squares[axis] += angle * angle;
-                stopped = stopped || angle >= limit;
+                reached = reached || angle >= limit;
             }
-            on_stop += stopped;
+            at_limit += reached;
         }
         for (int axis = 0; axis < 2; axis++) {
             j->rms_rad[axis] = sqrt(squares[axis] / (double)r->ticks_n);
         }
-        j->stop_share = (double)on_stop / (double)r->ticks_n;
+        j->limit_share = (double)at_limit / (double)r->ticks_n;
     }
 }
 

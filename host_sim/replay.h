@@ -17,7 +17,8 @@ typedef struct {
     double peak_rad[2], rms_rad[2]; /* theta, phi */
     double lag_deg;                 /* behind joint 1, at the strongest frequency of joint 1 */
     bool lag_known;
-    double stop_share; /* of the ticks, with either angle on its stop */
+    double
+        limit_share; /* of the ticks, with either angle at its limit (contour's stop) or beyond (elastic) */
 } replay_joint;
 
 typedef struct {
@@ -28,6 +29,8 @@ typedef struct {
     track_tick *ticks; /* ticks_n */
     float *angles_rad; /* ticks_n rows of 2 * links_n, theta before phi */
     long restarts;     /* after gaps */
+    long
+        restored_n; /* ticks after which links had to be made as long as they are: rod_restored_n */
     double step_median_us, step_p99_us, step_max_us;
     double lag_frequency_hz; /* 0 where joint 1 hardly moves */
     replay_joint joints[ROD_MAX_LINKS];

@@ -39,6 +39,7 @@ enum {
 static const char EXAMPLES[] =
     "  limber-sim replay build/tracks/shaking.txt --preset whip --report whip.html\n"
     "  limber-sim replay hand.csv --params my-rod.ini --set spring=400 --angles angles.csv\n"
+    "  limber-sim replay hand.txt --preset foil --model elastic --report foil.html\n"
     "  limber-sim replay unity.txt --up y --left-handed --rate 500\n"
     "  limber-sim replay hand.txt --preset foil --expect-hash 0123456789abcdef   # in CI\n\n"
     "Tracks: TUM (timestamp tx ty tz qx qy qz qw) or CSV with named columns, EuRoC's included; s, "
@@ -90,13 +91,6 @@ static int take_path(char **path, const char *text)
     return SIM_OK;
 }
 
-static int take_model(choices *c, const char *text)
-{
-    char assignment[80];
-    snprintf(assignment, sizeof assignment, "model=%.60s", text);
-    return params_text_set(&c->params, assignment);
-}
-
 static int take_option(choices *c, int option, const char *text)
 {
     switch (option) {
@@ -105,7 +99,7 @@ static int take_option(choices *c, int option, const char *text)
     case OPTION_SET:
         return params_text_set(&c->params, text);
     case OPTION_MODEL:
-        return take_model(c, text);
+        return params_text_model(&c->params, text);
     case OPTION_RATE:
         return take_number("--rate", text, 10.0, 20000.0, &c->rate_hz);
     case OPTION_UP:
@@ -272,7 +266,8 @@ int sim_replay_command(int argc, const char **argv)
         {"params", 'f', POPT_ARG_STRING, NULL, OPTION_PARAMS, "a parameter file", "FILE.ini"},
         {"set", 's', POPT_ARG_STRING, NULL, OPTION_SET,
          "change one parameter; as often as you like", "KEY=VALUE"},
-        {"model", 'm', POPT_ARG_STRING, NULL, OPTION_MODEL, "the mathematics: contour", "NAME"},
+        {"model", 'm', POPT_ARG_STRING, NULL, OPTION_MODEL, "the mathematics: contour or elastic",
+         "NAME"},
         {"rate", 'r', POPT_ARG_STRING, NULL, OPTION_RATE, "ticks a second (1000)", "HZ"},
         {"up", 0, POPT_ARG_STRING, NULL, OPTION_UP, "the track's axis that points up: y or z (z)",
          "AXIS"},

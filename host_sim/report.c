@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "output.h"
+#include "params_text.h"
 #include "sim.h"
 #include "summary.h"
 
@@ -104,11 +105,14 @@ static void add_parameters(cJSON *page, const rod_params *params)
     cJSON *list = cJSON_AddArrayToObject(page, "parameters");
     for (int i = 0; i < ROD_FIELDS_N; i++) {
         const rod_field *field = &rod_fields[i];
+        if (!rod_field_is_read(field, params->model)) {
+            continue;
+        }
         cJSON *entry = cJSON_CreateObject();
         cJSON_AddItemToArray(list, entry);
         cJSON_AddStringToObject(entry, "name", field->name);
         cJSON_AddStringToObject(entry, "symbol", field->symbol);
-        cJSON_AddStringToObject(entry, "unit", field->unit);
+        cJSON_AddStringToObject(entry, "unit", params_text_unit(field, params->model));
         cJSON *values = cJSON_AddArrayToObject(entry, "values");
         const int values_n = field->kind == ROD_FIELD_PER_JOINT ? params->links_n : 1;
         for (int joint = 0; joint < values_n; joint++) {
@@ -148,7 +152,7 @@ static void add_joints(cJSON *page, const replay *r)
         cJSON_AddNumberToObject(entry, "rms_phi_rad", j->rms_rad[1]);
         cJSON_AddItemToObject(entry, "lag_deg",
                               j->lag_known ? cJSON_CreateNumber(j->lag_deg) : cJSON_CreateNull());
-        cJSON_AddNumberToObject(entry, "stop_share", j->stop_share);
+        cJSON_AddNumberToObject(entry, "limit_share", j->limit_share);
     }
 }
 
@@ -163,7 +167,11 @@ static cJSON *make_page(const replay *r, const char *preset)
     cJSON_AddStringToObject(page, "program", "limber-sim " SIM_VERSION);
     cJSON_AddStringToObject(page, "track", r->source->path);
     cJSON_AddStringToObject(page, "model", rod_field_find("model")->choices[p->model]);
-    cJSON_AddStringToObject(page, "scheme", rod_field_find("scheme")->choices[p->scheme]);
+    if (p->model == ROD_MODEL_ELASTIC) {
+        cJSON_AddNumberToObject(page, "first_mode_hz", (double)rod_params_first_mode_hz(p));
+    } else {
+        cJSON_AddStringToObject(page, "scheme", rod_field_find("scheme")->choices[p->scheme]);
+    }
     cJSON_AddItemToObject(page, "preset",
                           preset != NULL ? cJSON_CreateString(preset) : cJSON_CreateNull());
     cJSON_AddNumberToObject(page, "rate_hz", r->rate_hz);

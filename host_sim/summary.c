@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <string.h>
 
 static __attribute__((format(printf, 3, 4))) void add_row(summary *s, const char *label,
@@ -60,36 +61,72 @@ static void describe_track(summary *s, const track *t)
     add_row(s, "oddities", "%s", *list == '\0' ? "none" : list);
 }
 
-static double length_of(const rod_params *p)
+static double sum_of(const rod_params *p, const float *per_joint)
 {
-    double length_m = 0.0;
+    double sum = 0.0;
     for (int i = 0; i < p->links_n; i++) {
-        length_m += (double)p->length_m[i];
+        sum += (double)per_joint[i];
     }
-    return length_m;
+    return sum;
+}
+
+static bool is_elastic(const replay *r)
+{
+    return r->params.model == ROD_MODEL_ELASTIC;
+}
+
+/* Into how many steps the model divides a tick. */
+static int steps_of(const replay *r)
+{
+    return is_elastic(r) ? elastic_steps_n(r->params.tick_s) : 1;
+}
+
+static void warn_under_resolved(summary *s, const replay *r)
+{
+    const double resolving_hz = (double)rod_params_resolving_rate_hz(&r->params);
+    if (resolving_hz <= r->rate_hz * steps_of(r) * 1.0001) {
+        return;
+    }
+    add_warning(s,
+                is_elastic(r)
+                    ? "under-resolved: the slowest swing takes less than six steps and is "
+                      "damped away; --rate %.0f would show it, or less stiffness"
+                    : "under-resolved: the stiffest joint swings faster than once in six "
+                      "ticks; --rate %.0f would do, or less stiffness",
+                ceil(resolving_hz));
+}
+
+static void warn_of_limits(summary *s, const replay *r)
+{
+    double share = 0.0;
+    int joint = 0;
+    for (int i = 0; i < r->params.links_n; i++) {
+        if (r->joints[i].limit_share > share) {
+            share = r->joints[i].limit_share;
+            joint = i + 1;
+        }
+    }
+    if (share > 0.0) {
+        add_warning(
+            s,
+            is_elastic(r)
+                ? "joint %d is bent beyond its limit %.2g %% of the time; the rod has no "
+                  "stop there, its servo may: a higher spring keeps it in reach"
+                : "joint %d is on its stop %.2g %% of the time; a higher spring keeps it off",
+            joint, 100.0 * share);
+    }
 }
 
 static void warn(summary *s, const replay *r)
 {
     const track_counts *c = &r->source->counts;
-    const double resolving_hz = (double)rod_params_resolving_rate_hz(&r->params);
-    if (resolving_hz > r->rate_hz * 1.0001) {
+    warn_under_resolved(s, r);
+    warn_of_limits(s, r);
+    if (r->restored_n > 0) {
         add_warning(s,
-                    "under-resolved: the stiffest joint swings faster than once in six ticks; "
-                    "--rate %.0f would do, or less stiffness",
-                    ceil(resolving_hz));
-    }
-    double share = 0.0;
-    int joint = 0;
-    for (int i = 0; i < r->params.links_n; i++) {
-        if (r->joints[i].stop_share > share) {
-            share = r->joints[i].stop_share;
-            joint = i + 1;
-        }
-    }
-    if (share > 0.0) {
-        add_warning(s, "joint %d is on its stop %.2g %% of the time; a higher spring keeps it off",
-                    joint, 100.0 * share);
+                    "the base moved so violently that links had to be pulled back to their "
+                    "lengths, at the price of momentum: %ld tick%s",
+                    r->restored_n, r->restored_n == 1 ? "" : "s");
     }
     if (c->jumps > 0) {
         add_warning(s,
@@ -104,15 +141,35 @@ static void warn(summary *s, const replay *r)
     }
 }
 
+static void describe_rod(summary *s, const replay *r, const char *preset)
+{
+    const rod_params *p = &r->params;
+    const char *const model = rod_field_find("model")->choices[p->model];
+    const double length_m = sum_of(p, p->length_m);
+    if (preset == NULL) {
+        preset = "own parameters";
+    }
+    if (is_elastic(r)) {
+        add_row(s, "rod", "%s: %d links, %.3g m, %.3g kg, %s", preset, p->links_n, length_m,
+                sum_of(p, p->mass_kg), model);
+        add_row(s, "first mode", "%.3g Hz in a still hand; gravity %.3g m/s^2",
+                (double)rod_params_first_mode_hz(p), (double)p->gravity_m_s2);
+    } else {
+        add_row(s, "rod", "%s: %d links, %.3g m, %s, %s", preset, p->links_n, length_m, model,
+                rod_field_find("scheme")->choices[p->scheme]);
+    }
+}
+
 void summary_make(const replay *r, const char *preset, summary *s)
 {
     *s = (summary){0};
-    const rod_params *p = &r->params;
     describe_track(s, r->source);
-    add_row(s, "rod", "%s: %d links, %.3g m, %s, %s", preset != NULL ? preset : "own parameters",
-            p->links_n, length_of(p), rod_field_find("model")->choices[p->model],
-            rod_field_find("scheme")->choices[p->scheme]);
-    add_row(s, "steps", "%ld at %g Hz%s", r->ticks_n, r->rate_hz,
+    describe_rod(s, r, preset);
+    summary_text parts = "";
+    if (steps_of(r) > 1) {
+        snprintf(parts, sizeof parts, ", each in %d parts", steps_of(r));
+    }
+    add_row(s, "steps", "%ld at %g Hz%s%s", r->ticks_n, r->rate_hz, parts,
             r->restarts > 0 ? ", restarted after gaps" : "");
     add_row(s, "a step", "%.2f us (median), %.2f us (p99), %.1f us (max)", r->step_median_us,
             r->step_p99_us, r->step_max_us);
@@ -125,7 +182,8 @@ void summary_make(const replay *r, const char *preset, summary *s)
 
 static void print_joints(const replay *r, FILE *out)
 {
-    fprintf(out, "joint      peak theta, phi        rms theta, phi     lag       on stop\n");
+    fprintf(out, "joint      peak theta, phi        rms theta, phi     lag       %s\n",
+            is_elastic(r) ? "beyond limit" : "on stop");
     for (int i = 0; i < r->params.links_n; i++) {
         const replay_joint *j = &r->joints[i];
         fprintf(out, "%5d  %8.4f %8.4f rad  %8.4f %8.4f rad", i + 1, j->peak_rad[0], j->peak_rad[1],
@@ -135,7 +193,7 @@ static void print_joints(const replay *r, FILE *out)
         } else {
             fprintf(out, "       -    ");
         }
-        fprintf(out, "  %5.2f %%\n", 100.0 * j->stop_share);
+        fprintf(out, "  %5.2f %%\n", 100.0 * j->limit_share);
     }
 }
 

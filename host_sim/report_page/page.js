@@ -3,10 +3,10 @@
 function fillHeader() {
   document.title = `${D.track} – limber replay report`;
   $('title').textContent = D.track;
-  $('lead').textContent = `Replay of a ${N}-link elastic rod, its base driven by a recorded hand motion`;
+  $('lead').textContent = `Replay of a rod of ${N} link${N > 1 ? 's' : ''}, its base driven by a recorded hand motion`;
   const whole = v => v.toLocaleString('en-US').replace(/,/g, '\u202f');
   const copy = el('button', { onclick: () => copyHash(copy), 'aria-label': 'Copy the hash' }, 'Copy');
-  const facts = [['preset', D.preset], ['model', D.model], ['scheme', D.scheme], ['links', N], ['length', metres(D.length)],
+  const facts = [['preset', D.preset], ['model', D.model], ['scheme', D.scheme], ['first mode', finite(D.first_mode_hz) && `${+D.first_mode_hz.toPrecision(3)} Hz`], ['links', N], ['length', metres(D.length)],
     ['rate', `${whole(D.rate_hz)} Hz`], ['steps', whole(D.steps)], ['duration', num(D.steps / D.rate_hz, 2) + ' s'],
     ['hash', D.hash && el('span', {}, el('code', { id: 'hash' }, D.hash), copy)]];
   $('facts').append(...facts.filter(([, v]) => v).map(([k, v]) => el('div', {}, el('dt', {}, k), el('dd', {}, v))));
@@ -38,8 +38,8 @@ function fillJoints() {
     el('td', {}, el('span', { className: 'dot' }, '● '), `${n + 1}`),
     ...keys.map((k, i) => angleCell(j[k], peaks[i])),
     num(j.lag_deg, 1) + (finite(j.lag_deg) ? '°' : ''),
-    el('td', { className: j.stop_share > 0 ? 'hot' : '' }, finite(j.stop_share) ? num(100 * j.stop_share, 1) + ' %' : '—')]);
-  const head = ['joint', 'peak θ (rad)', 'peak φ (rad)', 'RMS θ (rad)', 'RMS φ (rad)', 'phase lag', 'on stops'];
+    el('td', { className: j.limit_share > 0 ? 'hot' : '' }, finite(j.limit_share) ? num(100 * j.limit_share, 1) + ' %' : '—')]);
+  const head = ['joint', 'peak θ (rad)', 'peak φ (rad)', 'RMS θ (rad)', 'RMS φ (rad)', 'phase lag', D.model === 'elastic' ? 'beyond limit' : 'on stops'];
   $('jointTable').replaceChildren(table(head.map(t => el('th', { scope: 'col' }, t)), rows));
   [...$('jointTable').querySelectorAll('tbody tr')].forEach((r, n) => r.style.setProperty('--c', ramp(n / N)));
 }
