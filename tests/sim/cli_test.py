@@ -32,6 +32,7 @@ BAD_TRACKS = {  # name: content, what the line says beside the file's name
 BAD_INI = {
     "empty.ini": ("", "empty"),
     "key.ini": ("[rod]\nlinks = 4\nsprung = 1\n", ":3: unknown key 'sprung'"),
+    "device.ini": ("[rod]\nservo_kind = bus\nservo_kid = bus\n", ":3: unknown key 'servo_kid'"),
     "section.ini": ("[rods]\nlinks = 4\n", ":2: 'links' stands in section [rods]"),
     "number.ini": ("[rod]\nspring = soft\n", ":2: spring = soft: not a number"),
     "bounds.ini": ("[rod]\nspring = -1\n", ":2: spring = -1: out of bounds, must be 0 ... 1e+06 N m"),
@@ -52,6 +53,10 @@ BAD_OPTIONS = [  # arguments after the track, what the line says
     (["--model", "rubber"], "model = rubber: must be contour or elastic"),
     (["--set", "spring"], "--set spring: must be key=value"), (["--set", "tick=1"], "set by --rate"),
     (["--set", "hold=3"], "hold = 3: out of bounds, must be 1 ... 2"),
+    (["--set", "mass=1"], "--set mass: the contour model does not read it"),
+    (["--model", "elastic", "--set", "coupling=1"], "--set coupling: the elastic model does not read it"),
+    (["--model", "elastic", "--set", "mass=0"], "mass = 0: out of bounds, must be 1e-06 ... 1000 kg"),
+    (["--set", "servo_kind=bus"], "unknown key 'servo_kind'"),
     (["--set", "scheme=euler"], "must be midpoint or paper"),
     (["--set", "links=65"], "out of bounds, must be 1 ... 64"),
     (["--set", "spring=1,2"], "spring has 2 values for 4 links"),
@@ -99,6 +104,7 @@ class Refusals(SimCase):
         self.refused(["play"], "unknown command 'play'")
         self.refused(["--verbose"], "unknown command '--verbose'")
         for arguments, says in ((["--preset", "sword"], "no such preset"), (["--set", "spring=x"], "not a number"),
+                                (["--model", "rubber"], "--model: model = rubber: must be contour or elastic"),
                                 (["foil"], "unexpected 'foil'"), (["--rate", "5"], "--rate: unknown option"),
                                 (["--set", "spring=1,2"], "2 values for 4 links")):
             self.refused(["params", *arguments], says)

@@ -189,6 +189,10 @@ class Parameters(SimCase):
                 self.write("rod.ini", self.good("params", *arguments))
                 self.assertEqual(self.good("replay", track, "--params", "rod.ini").splitlines()[-1],
                                  self.good("replay", track, *arguments).splitlines()[-1], arguments)
+            for sets in ([], ["links=7"], ["gravity=0", "drag=0.02"], ["links=3", "mass=0.1,0.05,1e-3"]):
+                arguments = ["--preset", preset, "--model", "elastic"] + [word for s in sets for word in ("--set", s)]
+                self.write("rod.ini", self.good("params", *arguments))
+                self.assertEqual(self.replay_hash(track, "--params", "rod.ini"), self.replay_hash(track, *arguments))
         self.assertEqual([line.split()[0] for line in self.good("params", "--list").splitlines()], list(PRESETS))
 
     def test_precedence(self):

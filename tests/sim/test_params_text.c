@@ -27,7 +27,11 @@ static void check_key(const rod_field *field, bool as_list, bool in_ini, const c
                          joint > 0 ? separator : "", (double)value_for(field, joint));
     }
     setUp();
-    set("inertia=1000"); /* so that every drag and damper will do */
+    if (rod_field_is_read(field, ROD_MODEL_CONTOUR)) {
+        set("inertia=1000"); /* so that every drag and damper will do */
+    } else {
+        set("model=elastic");
+    }
     if (in_ini) {
         snprintf(ini, sizeof ini, "[rod]\n%s\n", assignment);
         read_ini(ini);
@@ -65,6 +69,33 @@ static void test_models_and_schemes_by_name(void)
     set("scheme=midpoint");
     resolve();
     TEST_ASSERT_EQUAL_INT(ROD_SCHEME_MIDPOINT, params.scheme);
+    setUp();
+    set("model=elastic");
+    resolve();
+    TEST_ASSERT_EQUAL_INT(ROD_MODEL_ELASTIC, params.model);
+}
+
+static void test_keys_that_the_model_does_not_read(void)
+{
+    static const char *const CASES[][3] = {
+        {"elastic", "hold=2", "--set hold: the elastic model does not read it"},
+        {"elastic", "coupling=5", "--set coupling: the elastic model does not read it"},
+        {"contour", "mass=0.1", "--set mass: the contour model does not read it"},
+        {"contour", "gravity=0", "--set gravity: the contour model does not read it"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        setUp();
+        set(CASES[i][1]);
+        TEST_ASSERT_EQUAL_INT(SIM_OK, params_text_model(&text, CASES[i][0]));
+        TEST_ASSERT_EQUAL_INT(SIM_BAD_INPUT, params_text_resolve(&text, 1000.0, &params));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(complaint, CASES[i][2]), complaint);
+    }
+    setUp(); /* a file is for either model: limber params list --ini writes all keys */
+    read_ini("[rod]\nmodel = elastic\nhold = 2\ncoupling = 5\nmass = 0.1\n");
+    resolve();
+    TEST_ASSERT_EQUAL_INT(ROD_MODEL_ELASTIC, params.model);
+    TEST_ASSERT_EQUAL_INT(SIM_BAD_INPUT, params_text_model(&text, "rubber"));
+    expect_complaint("--model", 0, "model = rubber: must be contour or elastic", "");
 }
 
 static void expect_set_refused(const char *assignment, const char *reason)
@@ -189,17 +220,41 @@ static void test_presets_and_precedence(void)
     }
 }
 
+/* The model decides which of a preset's two sets of numbers is meant, wherever it is said. */
+static void test_presets_of_either_model(void)
+{
+    for (int i = 0; i < ROD_PRESETS_N; i++) {
+        for (int model_first = 0; model_first < 2; model_first++) {
+            rod_params wanted;
+            setUp();
+            if (model_first) {
+                TEST_ASSERT_EQUAL_INT(SIM_OK, params_text_model(&text, "elastic"));
+            }
+            TEST_ASSERT_EQUAL_INT(SIM_OK, params_text_preset(&text, rod_presets[i].name));
+            if (!model_first) {
+                set("model=elastic");
+            }
+            set("links=9");
+            resolve();
+            rod_preset_fill(&rod_presets[i], ROD_MODEL_ELASTIC, 9, &wanted);
+            TEST_ASSERT_EQUAL_MEMORY(&wanted, &params, sizeof params);
+        }
+    }
+}
+
 int main(void)
 {
     fixture_start();
     UNITY_BEGIN();
     RUN_TEST(test_every_key_takes_a_number_or_a_list);
     RUN_TEST(test_models_and_schemes_by_name);
+    RUN_TEST(test_keys_that_the_model_does_not_read);
     RUN_TEST(test_every_bound_is_named);
     RUN_TEST(test_refusals_on_the_command_line);
     RUN_TEST(test_lists_must_fit_the_links);
     RUN_TEST(test_what_only_the_whole_shows);
     RUN_TEST(test_presets_and_precedence);
+    RUN_TEST(test_presets_of_either_model);
     fixture_end();
     return UNITY_END();
 }

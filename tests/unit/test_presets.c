@@ -26,22 +26,30 @@ static void test_presets_are_found_by_name(void)
 }
 
 /* Valid, factorable, and resolved: the 1 ms tick is what a preset is made for. */
-static void test_presets_suit_every_number_of_links(void)
+static void expect_suitable(const rod_preset *preset, int32_t model, int links_n)
 {
     static rod r;
+    rod_preset_fill(preset, model, links_n, &params);
+    TEST_ASSERT_EQUAL_INT(model, params.model);
+    TEST_ASSERT_EQUAL_INT(links_n, params.links_n);
+    TEST_ASSERT_EQUAL_INT(preset->hold_n, params.hold_n);
+    TEST_ASSERT_EQUAL_INT(ROD_SCHEME_MIDPOINT, params.scheme);
+    TEST_ASSERT_EQUAL_HEX32(bits_of(0.001f), bits_of(params.tick_s));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ROD_OK, rod_params_check(&params, NULL), preset->name);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ROD_OK, rod_init(&r, &params, NULL), preset->name);
+    TEST_ASSERT_TRUE_MESSAGE(rod_params_resolving_rate_hz(&params) <= 1000.0f, preset->name);
+    params.links_n = ROD_MAX_LINKS; /* links that come later are like the last */
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ROD_OK, rod_params_check(&params, NULL), preset->name);
+}
+
+static void test_presets_suit_every_number_of_links(void)
+{
     for (int i = 0; i < ROD_PRESETS_N; i++) {
         const rod_preset *preset = &rod_presets[i];
         TEST_ASSERT_TRUE(preset->links_n >= 1 && preset->links_n <= ROD_MAX_LINKS);
         for (int links_n = 1; links_n <= ROD_MAX_LINKS; links_n++) {
-            rod_preset_fill(preset, links_n, &params);
-            TEST_ASSERT_EQUAL_INT(links_n, params.links_n);
-            TEST_ASSERT_EQUAL_INT(preset->hold_n, params.hold_n);
-            TEST_ASSERT_EQUAL_INT(ROD_SCHEME_MIDPOINT, params.scheme);
-            TEST_ASSERT_EQUAL_HEX32(bits_of(0.001f), bits_of(params.tick_s));
-            TEST_ASSERT_EQUAL_INT_MESSAGE(ROD_OK, rod_params_check(&params, NULL), preset->name);
-            TEST_ASSERT_EQUAL_INT_MESSAGE(ROD_OK, rod_init(&r, &params, NULL), preset->name);
-            TEST_ASSERT_TRUE_MESSAGE(rod_params_resolving_rate_hz(&params) <= 1000.0f,
-                                     preset->name);
+            expect_suitable(preset, ROD_MODEL_CONTOUR, links_n);
+            expect_suitable(preset, ROD_MODEL_ELASTIC, links_n);
         }
     }
 }
@@ -62,7 +70,7 @@ static void test_presets_taper_evenly(void)
     for (int i = 0; i < ROD_PRESETS_N; i++) {
         const rod_preset *preset = &rod_presets[i];
         for (int links_n = 1; links_n <= ROD_MAX_LINKS; links_n++) {
-            rod_preset_fill(preset, links_n, &params);
+            rod_preset_fill(preset, ROD_MODEL_CONTOUR, links_n, &params);
             expect_taper(preset->length_m, links_n, 0, params.length_m);
             expect_taper(preset->inertia, links_n, 0, params.inertia);
             expect_taper(preset->drag, links_n, 0, params.drag);
@@ -85,16 +93,120 @@ static void test_some_preset_smooths(void)
     TEST_ASSERT_TRUE(smoothing_n >= 1);
 }
 
+/* --- elastic --- */
+
+static double sum_of(const float *list)
+{
+    double sum = 0.0;
+    for (int i = 0; i < params.links_n; i++) {
+        sum += (double)list[i];
+    }
+    return sum;
+}
+
+/* Cut finer, it is the same rod: as long as contour's at the number of links that suits it, and as quick. */
+static void test_an_elastic_preset_is_one_rod(void)
+{
+    static const double FIRST_MODE_HZ[ROD_PRESETS_N] = {4.34, 0.872, 0.680, 3.13,
+                                                        150.0}; /* N = 200, numpy */
+    for (int i = 0; i < ROD_PRESETS_N; i++) {
+        const rod_preset *preset = &rod_presets[i];
+        rod_preset_fill(preset, ROD_MODEL_CONTOUR, preset->links_n, &params);
+        const double length_m = sum_of(params.length_m);
+        for (int links_n = 1; links_n <= ROD_MAX_LINKS; links_n++) {
+            rod_preset_fill(preset, ROD_MODEL_ELASTIC, links_n, &params);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5 * length_m, length_m, sum_of(params.length_m));
+            const double off = links_n < 3 ? 0.5 : links_n < 8 ? 0.14 : 0.02;
+            TEST_ASSERT_DOUBLE_WITHIN(off * FIRST_MODE_HZ[i], FIRST_MODE_HZ[i],
+                                      (double)rod_params_first_mode_hz(&params));
+        }
+    }
+}
+
+static void test_elastic_coefficients_are_those_of_a_tapered_beam(void)
+{
+    for (int i = 0; i < ROD_PRESETS_N; i++) {
+        const rod_blank *blank = &rod_presets[i].elastic;
+        for (int links_n = 1; links_n <= ROD_MAX_LINKS; links_n++) {
+            const double l = (double)blank->length_m / links_n;
+            rod_preset_fill(&rod_presets[i], ROD_MODEL_ELASTIC, links_n, &params);
+            for (int j = 0; j < links_n; j++) {
+                const double slope = ((double)blank->tip - 1.0) / links_n;
+                const double half = j == 0 ? 0.5 : 1.0, end = j + 1 == links_n ? 0.5 : 1.0;
+                const double spring =
+                    (double)blank->bending_n_m2 * pow(1.0 + slope * j, 4.0) / (l * half);
+                const double mass =
+                    (double)blank->mass_kg_m * pow(1.0 + slope * (j + 1), 2.0) * l * end;
+                TEST_ASSERT_DOUBLE_WITHIN(1e-5 * spring, spring, (double)params.spring[j]);
+                TEST_ASSERT_DOUBLE_WITHIN(1e-5 * mass, mass, (double)params.mass_kg[j]);
+                TEST_ASSERT_DOUBLE_WITHIN(1e-5 * spring * (double)blank->relaxation_s,
+                                          spring * (double)blank->relaxation_s,
+                                          (double)params.damper[j]);
+                TEST_ASSERT_DOUBLE_WITHIN(1e-6, (double)blank->drag_n_s_m2 * l * end,
+                                          (double)params.drag[j]);
+            }
+        }
+    }
+}
+
+/* The FIE's material rules, m.8: clamped 70 cm from its point, 200 g hung 3 cm from it, a foil's blade bends by 5.5
+ * to 9.5 cm. In links of 2 cm; at the clamp there is half of one to bend. */
+static void test_the_foil_would_pass_the_fie(void)
+{
+    const double clamp_m = 0.88 - 0.70, weight_m = 0.88 - 0.03;
+    double bend_m = 0.0;
+    rod_preset_fill(rod_preset_find("foil"), ROD_MODEL_ELASTIC, 44, &params);
+    for (int j = 9; j < 44; j++) {
+        const double at_m = 0.02 * j, arm_m = weight_m - at_m;
+        const double half = at_m < clamp_m + 0.001 ? 0.5 : 1.0;
+        bend_m += arm_m > 0.0 ? half * 0.2 * 9.81 * arm_m / (double)params.spring[j] * (0.88 - at_m)
+                              : 0.0;
+    }
+    printf("foil: the FIE's weight bends it by %.1f mm\n", 1000.0 * bend_m);
+    TEST_ASSERT_DOUBLE_WITHIN(0.001, 0.076, bend_m); /* presets.c says 7.6 cm */
+}
+
+/* Nudged by 1 mm, it swings at the frequency that rod_params_first_mode_hz gives. */
+static void test_an_elastic_preset_swings_at_its_first_mode(void)
+{
+    enum { TICKS_N = 8000, SETTLED = 2000 };
+    static rod r;
+    static const char *const NAMES[] = {
+        "foil", "fishing-rod"}; /* the others are damped too soon, or stiff */
+    for (int k = 0; k < 2; k++) {
+        rod_preset_fill(rod_preset_find(NAMES[k]), ROD_MODEL_ELASTIC, 10, &params);
+        params.gravity_m_s2 = 0.0f;
+        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(&r, &params, NULL));
+        double first = -1.0, last = 0.0, before = 0.0;
+        int rises_n = -1;
+        for (int tick = 0; tick < TICKS_N; tick++) {
+            const rod_pose hand = {{tick < 10 ? 0.0f : 0.001f, 0.0f, 0.0f},
+                                   {0.0f, 0.0f, 0.0f, 1.0f}};
+            TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(&r, &hand));
+            const double now = (double)rod_angles(&r)[0][ROD_THETA];
+            if (tick > SETTLED && before < 0.0 && now >= 0.0) {
+                last = tick - now / (now - before);
+                first = rises_n < 0 ? last : first;
+                rises_n++;
+            }
+            before = now;
+        }
+        const double wanted_hz = (double)rod_params_first_mode_hz(&params);
+        TEST_ASSERT_TRUE_MESSAGE(rises_n > 8, NAMES[k]);
+        TEST_ASSERT_DOUBLE_WITHIN(0.005 * wanted_hz, wanted_hz, rises_n / ((last - first) * 0.001));
+    }
+}
+
 /* --- in character ------------------------------------------------------------------------------ */
 
 enum { TURN_TICKS = 239, TURNS_N = 6 }; /* 2.39 s a turn at 100 Hz */
 
 /* The amplitude of theta of the first and the last joint in the sixth turn of a circle of 0.15 m. */
-static void amplitudes_on_the_circle(const rod_preset *preset, double amplitude[2])
+static void amplitudes_on_the_circle(const rod_preset *preset, int32_t model, double amplitude[2])
 {
     static rod r;
     double re[2] = {0.0, 0.0}, im[2] = {0.0, 0.0};
-    rod_preset_fill(preset, preset->links_n, &params);
+    rod_preset_fill(preset, model, preset->links_n, &params);
     params.tick_s = 0.01f;
     TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(&r, &params, NULL));
     for (int tick = 0; tick < TURNS_N * TURN_TICKS; tick++) {
@@ -119,7 +231,7 @@ static void test_soft_presets_bend_to_the_tip(void)
         const char *name = rod_presets[i].name;
         const bool soft = strcmp(name, "whip") == 0 || strcmp(name, "ribbon") == 0;
         double amplitude[2];
-        amplitudes_on_the_circle(&rod_presets[i], amplitude);
+        amplitudes_on_the_circle(&rod_presets[i], ROD_MODEL_CONTOUR, amplitude);
         printf("%-12s joint 1 %.4f rad, last %.4f rad, %.2f of it\n", name, amplitude[0],
                amplitude[1], amplitude[1] / amplitude[0]);
         if (soft) {
@@ -132,6 +244,26 @@ static void test_soft_presets_bend_to_the_tip(void)
     }
 }
 
+/* On the hand's circle the elastic rods bend in the order of their stiffness, as their namesakes do. */
+static void test_elastic_presets_are_as_soft_as_they_say(void)
+{
+    static const char *const STIFFEST_FIRST[] = {"stiff-bar", "fishing-rod", "foil", "ribbon",
+                                                 "whip"};
+    double before = 0.0;
+    for (int i = 0; i < ROD_PRESETS_N; i++) {
+        const rod_preset *preset = rod_preset_find(STIFFEST_FIRST[i]);
+        double amplitude[2];
+        amplitudes_on_the_circle(preset, ROD_MODEL_ELASTIC, amplitude);
+        const double tilt = amplitude[0] * preset->links_n;
+        printf("%-12s joint 1 %.5f rad, last %.5f rad\n", preset->name, amplitude[0], amplitude[1]);
+        TEST_ASSERT_TRUE_MESSAGE(tilt > before, preset->name);
+        before = tilt;
+        if (i == 0) {
+            TEST_ASSERT_TRUE(amplitude[0] < 0.01);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -139,6 +271,11 @@ int main(void)
     RUN_TEST(test_presets_suit_every_number_of_links);
     RUN_TEST(test_presets_taper_evenly);
     RUN_TEST(test_some_preset_smooths);
+    RUN_TEST(test_an_elastic_preset_is_one_rod);
+    RUN_TEST(test_elastic_coefficients_are_those_of_a_tapered_beam);
+    RUN_TEST(test_the_foil_would_pass_the_fie);
+    RUN_TEST(test_an_elastic_preset_swings_at_its_first_mode);
     RUN_TEST(test_soft_presets_bend_to_the_tip);
+    RUN_TEST(test_elastic_presets_are_as_soft_as_they_say);
     return UNITY_END();
 }

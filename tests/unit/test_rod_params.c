@@ -279,6 +279,26 @@ static void test_resolving_rate_is_that_of_the_fastest_joint(void)
     }
 }
 
+static void test_models_read_what_is_theirs(void)
+{
+    static const char *const CONTOUR_ONLY[] = {"scheme", "hold", "inertia", "coupling",
+                                               "smoothing"};
+    static const char *const ELASTIC_ONLY[] = {"mass", "gravity"};
+    int contour_n = 0, elastic_n = 0;
+    for (int i = 0; i < ROD_FIELDS_N; i++) {
+        contour_n += rod_field_is_read(&rod_fields[i], ROD_MODEL_CONTOUR);
+        elastic_n += rod_field_is_read(&rod_fields[i], ROD_MODEL_ELASTIC);
+    }
+    TEST_ASSERT_EQUAL_INT(ROD_FIELDS_N - 2, contour_n);
+    TEST_ASSERT_EQUAL_INT(ROD_FIELDS_N - 5, elastic_n);
+    for (int i = 0; i < 5; i++) {
+        TEST_ASSERT_FALSE(rod_field_is_read(rod_field_find(CONTOUR_ONLY[i]), ROD_MODEL_ELASTIC));
+    }
+    for (int i = 0; i < 2; i++) {
+        TEST_ASSERT_FALSE(rod_field_is_read(rod_field_find(ELASTIC_ONLY[i]), ROD_MODEL_CONTOUR));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -293,5 +313,6 @@ int main(void)
     RUN_TEST(test_set_and_get_meet_one_entry);
     RUN_TEST(test_defaults_are_the_papers);
     RUN_TEST(test_resolving_rate_is_that_of_the_fastest_joint);
+    RUN_TEST(test_models_read_what_is_theirs);
     return UNITY_END();
 }
