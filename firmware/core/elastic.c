@@ -97,6 +97,7 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
     memset(state, 0, sizeof *state);
     state->axis_step = vec3_scale(vec3_sub(now_frame.z, before_frame.z), share);
     state->base_step_m = vec3_scale(vec3_sub(base->position_m, before.position_m), share);
+    state->spin_step -= share * 2.0f * (motion->turn.w < 0.0f ? -motion->turn.z : motion->turn.z);
     vec3 step_m = state->base_step_m;
     for (int i = 0; i < model->links_n; i++) {
         const float *angles = angle_rad[i], *gained = increment_rad[i];

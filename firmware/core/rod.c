@@ -261,6 +261,7 @@ static void sweep(rod *r)
         sweep_vec3(&state->speed_m_s[i]);
         sweep_vec3(&state->speed_step[i]);
         state->tension[i] = without_dust(state->tension[i]);
+        state->tension_step[i] = without_dust(state->tension_step[i]);
         return;
     }
     contour_state *state = &r->as.contour.state[r->as.contour.current];
