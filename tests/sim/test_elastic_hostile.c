@@ -11,7 +11,7 @@
 #include "rod.h"
 #include "unity.h"
 
-static long sets_n = 3000;
+static long sets_n = 1000;
 static uint32_t seed;
 static rod r;
 static rod_params params;
