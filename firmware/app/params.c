@@ -236,7 +236,8 @@ static int difference(const params *p, int index, int entries_n)
 
 bool params_refuse_rod(rod_error error, const rod_refusal *refusal, params_refusal *why)
 {
-    const bool single = error > ROD_E_OVERDAMPED;
+    /* a field out of its own bounds, or fields that do not go together */
+    const bool single = refusal->field != NULL && error != ROD_E_OVERDAMPED;
     return refuse(why, (params_refusal){single ? REASON_BOUNDS : REASON_COMBINATION, refusal->joint,
                                         refusal->value, refusal->min, refusal->max,
                                         refusal->field != NULL ? refusal->field->name : "",

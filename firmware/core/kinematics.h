@@ -57,7 +57,7 @@ void kinematics_nodes(const rod_pose *base, const rod_joint *angles_rad, const f
 
 /* The inverse: angles from the links as vectors of any length, from node to node. Where a link points along its
  * parent's +-y, theta is open: the value already in angles_rad is kept. A link of no length keeps both
- * of its angles. About 190 instructions a link. */
+ * of its angles. About 230 instructions a link. */
 void kinematics_angles(const rod_pose *base, const vec3 *links, int links_n, rod_joint *angles_rad);
 
 #endif

@@ -15,8 +15,8 @@
  * the same inputs give the same bits on every target. Subnormals are kept; a rod at rest is swept clean of them
  * within a second or two.
  *
- * Interrupts: rod_step takes the same time at every call for a given N, does not block, and may run in
- * one; a rod must not be stepped and changed at once. Errors are negative (rod_params.h); a call that
+ * Interrupts: rod_step does not block and may run in one. It takes the same time at every call for a given N
+ * (contour), or up to a stated worst (elastic: one to three Newton steps on the lengths); a rod must not be stepped and changed at once. Errors are negative (rod_params.h); a call that
  * returns one has changed nothing.
  */
 #ifndef LIMBER_ROD_H
@@ -73,7 +73,7 @@ void rod_set_force(rod *r, rod_force_fn force, void *context);
 
 /* One tick: the base is now here. The first step after rod_init or rod_reset only takes the pose.
  * The quaternion must be of unit length to 1e-3: to what it is off, links are off in rod_nodes. Errors: ROD_E_POSE, ROD_E_FORCE, ROD_E_NOT_FINITE.
- * Cost on a Cortex-M4F, instructions: see README, "What it costs"; linear in N, nothing else. */
+ * Cost on a Cortex-M4F, instructions: see README, "What it costs"; linear in N. */
 rod_error rod_step(rod *r, const rod_pose *base);
 
 /* The joints' angles after the last step, rad: links_n rows of [ROD_THETA], [ROD_PHI]. Points into
@@ -81,7 +81,7 @@ rod_error rod_step(rod *r, const rod_pose *base);
 const rod_joint *rod_angles(const rod *r);
 
 /* Nodes 0 ... links_n in the world, m, into the caller's links_n + 1 entries. Returns that number,
- * or 0 before the first pose. About 135 instructions a link (contour), 15 (elastic): ask when you need them. */
+ * or 0 before the first pose. About 135 instructions a link (contour), 20 (elastic): ask when you need them. */
 int rod_nodes(const rod *r, vec3 *nodes_m);
 
 /* Ticks since rod_init whose motion was so violent that the links' lengths were made good from the base

@@ -192,6 +192,14 @@ static void say_hello(float pose_hz)
     tick();
 }
 
+/* A device that knows the tool and its clock. */
+__attribute__((unused)) static void bench_connected(int links_n)
+{
+    bench_new(links_n);
+    say_hello(100.0f);
+    ticks(20);
+}
+
 /* After an ARM the servos boot, are found and blend in: ACTIVE. */
 __attribute__((unused)) static void sway_until_active(void)
 {

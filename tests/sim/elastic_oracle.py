@@ -14,7 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from oracle import OneLineParser, UserError, awkward_track, clean, csv_header, read_track, resample, rotation_matrix
+from oracle import OneLineParser, UserError, awkward_track, clean, csv_header, given_settings, read_track, resample, \
+    rotation_matrix
 
 PER_LINK = {"length": 0.03, "mass": 0.02, "drag": 0.0, "spring": 80.0, "damper": 2.0}
 DEFAULTS = {"links": 4, "gravity": 9.81, **PER_LINK}
@@ -177,12 +178,7 @@ COMPARED_S = 8                   # of a track: a dense step takes half a millise
 
 def settings_from(pairs):
     """['links=3', 'spring=80,70,60', ...] -> every setting, per-link ones as arrays of N."""
-    given = dict(DEFAULTS)
-    for pair in pairs:
-        key, equals, value = pair.partition("=")
-        if not equals or key not in DEFAULTS:
-            raise UserError(f"--set {pair}: expected key=value, key one of {' '.join(DEFAULTS)}")
-        given[key] = value
+    given = given_settings(pairs, DEFAULTS)
     try:
         links, lists = int(given["links"]), {key: np.array(str(given[key]).split(","), float) for key in PER_LINK}
         return {"links": links, "gravity": float(given["gravity"]),

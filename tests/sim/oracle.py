@@ -220,14 +220,20 @@ def simulate(rod, position_m, rotation, restart, start_rad=0.0):
     return angle_rad, touched
 
 
-def settings_from(pairs):
-    """['links=3', 'spring=80,70,60', ...] -> every setting, per-joint ones as arrays of N."""
-    given = dict(DEFAULTS)
+def given_settings(pairs, defaults):
+    """['links=3', 'spring=80,70,60', ...] over the defaults, still as texts."""
+    given = dict(defaults)
     for pair in pairs:
         key, equals, value = pair.partition("=")
-        if not equals or key not in DEFAULTS:
-            raise UserError(f"--set {pair}: expected key=value, key one of {' '.join(DEFAULTS)}")
+        if not equals or key not in defaults:
+            raise UserError(f"--set {pair}: expected key=value, key one of {' '.join(defaults)}")
         given[key] = value
+    return given
+
+
+def settings_from(pairs):
+    """['links=3', 'spring=80,70,60', ...] -> every setting, per-joint ones as arrays of N."""
+    given = given_settings(pairs, DEFAULTS)
     try:
         links, hold = int(given["links"]), int(given["hold"])
         joint = {key: np.array([float(v) for v in str(given[key]).split(",")]) for key in PER_JOINT}

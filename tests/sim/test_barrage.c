@@ -18,9 +18,7 @@ static uint32_t next_random(void)
 
 void setUp(void)
 {
-    bench_new(6);
-    say_hello(100.0f);
-    ticks(20);
+    bench_connected(6);
 }
 
 void tearDown(void)

@@ -4,9 +4,7 @@
 
 void setUp(void)
 {
-    bench_new(6);
-    say_hello(100.0f);
-    ticks(20);
+    bench_connected(6);
 }
 
 void tearDown(void)

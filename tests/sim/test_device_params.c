@@ -6,9 +6,7 @@
 
 void setUp(void)
 {
-    bench_new(6);
-    say_hello(100.0f);
-    ticks(20);
+    bench_connected(6);
 }
 
 void tearDown(void)
@@ -252,6 +250,26 @@ static void test_every_pose_is_accounted_for(void)
                      in->sequence.lost > 0);
 }
 
+/* One value out of its bounds is told as that, values that do not go together as that, whatever the rod's numbers. */
+static void test_a_refusal_by_the_rod_keeps_its_kind(void)
+{
+    params_refusal why;
+    for (int i = 0; i < ROD_FIELDS_N; i++) {
+        const rod_refusal bounds = {rod_fields[i].error, &rod_fields[i], 0, 1.0f, 2.0f, 3.0f};
+        TEST_ASSERT_FALSE(params_refuse_rod(bounds.error, &bounds, &why));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(REASON_BOUNDS, why.reason, rod_fields[i].name);
+        TEST_ASSERT_EQUAL_STRING(rod_fields[i].name, why.field);
+    }
+    const rod_refusal together[] = {
+        {ROD_E_OVERDAMPED, rod_field_find("damper"), 0, 3.0f, 0.0f, 2.0f},
+        {ROD_E_PIVOT, NULL, 1, 0.0f, 0.0f, 0.0f},
+    };
+    for (int i = 0; i < 2; i++) {
+        TEST_ASSERT_FALSE(params_refuse_rod(together[i].error, &together[i], &why));
+        TEST_ASSERT_EQUAL_INT(REASON_COMBINATION, why.reason);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -265,5 +283,6 @@ int main(void)
     RUN_TEST(test_a_power_cut_while_saving_leaves_old_or_new);
     RUN_TEST(test_wraps_go_unnoticed);
     RUN_TEST(test_every_pose_is_accounted_for);
+    RUN_TEST(test_a_refusal_by_the_rod_keeps_its_kind);
     return UNITY_END();
 }

@@ -1,15 +1,7 @@
 /* test_rod.c - the rod as its users see it: what a call changes, and above all what it must not. */
-#include "rod.h"
-#include "test_support.h"
-#include "unity.h"
+#include "rod_fixture.h"
 
 #include <stdbool.h>
-
-static rod one, twin;
-static rod_params params;
-static vec3 nodes[ROD_MAX_LINKS + 1];
-
-static const rod_pose AT_ORIGIN = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
 
 void setUp(void)
 {
@@ -20,22 +12,6 @@ void setUp(void)
 void tearDown(void) {}
 
 /* --- helpers ----------------------------------------------------------------------------------- */
-
-static void follow(rod *r, double from_s, int ticks_n)
-{
-    for (int i = 0; i < ticks_n; i++) {
-        const rod_pose hand = hand_at(from_s + (double)r->params.tick_s * i);
-        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(r, &hand));
-    }
-}
-
-/* A rod in full swing. */
-static void swing(rod *r)
-{
-    TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(r, &params, NULL));
-    follow(r, 0.0, 100);
-    TEST_ASSERT_TRUE(fabsf(rod_angles(r)[0][ROD_THETA]) > 0.01f);
-}
 
 static void expect_same_angles(const rod *a, const rod *b)
 {

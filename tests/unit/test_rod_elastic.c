@@ -1,43 +1,12 @@
 /* test_rod_elastic.c - rod.h with the elastic model: what a call changes, what it must not, and what pushes the rod. */
-#include "rod.h"
-#include "test_support.h"
-#include "unity.h"
-
-static rod one, twin;
-static rod_params params;
-static vec3 nodes[ROD_MAX_LINKS + 1];
-
-static const rod_pose ORIGIN = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
+#include "rod_fixture.h"
 
 void setUp(void)
 {
-    rod_params_defaults(&params);
-    params.model = ROD_MODEL_ELASTIC;
-    params.links_n = 6;
-    for (int i = 0; i < ROD_MAX_LINKS; i++) {
-        params.spring[i] = 4.0f;
-        params.damper[i] = 0.02f;
-        params.length_m[i] = 0.05f;
-    }
+    elastic_params(6, 0.02f);
 }
 
 void tearDown(void) {}
-
-static void follow(rod *r, double from_s, int ticks_n)
-{
-    for (int i = 0; i < ticks_n; i++) {
-        const rod_pose hand = hand_at(from_s + (double)r->params.tick_s * i);
-        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(r, &hand));
-    }
-}
-
-/* A rod in full swing. */
-static void swing(rod *r)
-{
-    TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(r, &params, NULL));
-    follow(r, 0.0, 100);
-    TEST_ASSERT_TRUE(fabsf(rod_angles(r)[0][ROD_THETA]) > 0.1f);
-}
 
 static void set(rod *r)
 {
@@ -179,9 +148,9 @@ static void make_unfactorable(rod_params *p)
 
 static void test_refusals_change_nothing(void)
 {
-    const rod_pose bad_poses[] = {{{NAN, 0.0f, 0.0f}, ORIGIN.orientation},
-                                  {{0.0f, 1001.0f, 0.0f}, ORIGIN.orientation},
-                                  {ORIGIN.position_m, {0.0f, 0.0f, 0.5f, 0.5f}}};
+    const rod_pose bad_poses[] = {{{NAN, 0.0f, 0.0f}, AT_ORIGIN.orientation},
+                                  {{0.0f, 1001.0f, 0.0f}, AT_ORIGIN.orientation},
+                                  {AT_ORIGIN.position_m, {0.0f, 0.0f, 0.5f, 0.5f}}};
     swing(&one);
     twin = one;
     for (int i = 0; i <= ROD_FIELDS_N; i++) {

@@ -1,25 +1,10 @@
 /* test_rod_elastic_forces.c - external forces on elastic rods: where they bend one to, and which are refused. */
-#include "rod.h"
-#include "test_support.h"
-#include "unity.h"
-
-static rod one, twin;
-static rod_params params;
-static vec3 nodes[ROD_MAX_LINKS + 1];
-
-static const rod_pose ORIGIN = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
+#include "rod_fixture.h"
 
 void setUp(void)
 {
-    rod_params_defaults(&params);
-    params.model = ROD_MODEL_ELASTIC;
-    params.links_n = 3;
+    elastic_params(3, 0.05f);
     params.gravity_m_s2 = 0.0f;
-    for (int i = 0; i < ROD_MAX_LINKS; i++) {
-        params.spring[i] = 4.0f;
-        params.damper[i] = 0.05f;
-        params.length_m[i] = 0.05f;
-    }
 }
 
 void tearDown(void) {}
@@ -39,13 +24,6 @@ static void do_push(const vec3 *nodes_m, int nodes_n, vec3 *forces_newton, void 
     forces_newton[p->node] = p->newton;
 }
 
-static void rest(rod *r, const rod_pose *base, int ticks_n)
-{
-    for (int i = 0; i < ticks_n; i++) {
-        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(r, base));
-    }
-}
-
 /* At rest every joint's spring holds the force at its lever: k alpha = F x how far beyond it, across the force, the
  * node lies. So node for node, along x as along y, and in newtons. */
 static void test_a_force_on_a_node_bends_the_joints_before_it(void)
@@ -56,7 +34,7 @@ static void test_a_force_on_a_node_bends_the_joints_before_it(void)
         (&p.newton.x)[axis] = 2.0f;
         TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(&one, &params, NULL));
         rod_set_force(&one, do_push, &p);
-        rest(&one, &ORIGIN, 3000);
+        rest(&one, &AT_ORIGIN, 3000);
         rod_nodes(&one, nodes);
         for (int i = 0; i < 3; i++) {
             const double lever_m = (double)nodes[node].z - (double)nodes[i].z;
@@ -76,13 +54,13 @@ static void test_forces_without_measure_are_refused(void)
         push p = {1 + option % 3, {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, 0};
         (&p.newton.x)[option / 5] = BAD[option % 5];
         TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(&one, &params, NULL));
-        rest(&one, &ORIGIN, 10);
+        rest(&one, &AT_ORIGIN, 10);
         rod_set_force(&one, do_push, &p);
         twin = one;
-        TEST_ASSERT_EQUAL_INT(ROD_E_FORCE, rod_step(&one, &ORIGIN));
+        TEST_ASSERT_EQUAL_INT(ROD_E_FORCE, rod_step(&one, &AT_ORIGIN));
         TEST_ASSERT_EQUAL_MEMORY(&twin, &one, sizeof one);
         rod_set_force(&one, NULL, NULL);
-        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(&one, &ORIGIN));
+        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(&one, &AT_ORIGIN));
     }
 }
 

@@ -1,13 +1,5 @@
 /* test_rod_forces.c - external forces: where they bend a rod to, and which are refused. */
-#include "rod.h"
-#include "test_support.h"
-#include "unity.h"
-
-static rod one, twin;
-static rod_params params;
-static vec3 nodes[ROD_MAX_LINKS + 1];
-
-static const rod_pose AT_ORIGIN = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
+#include "rod_fixture.h"
 
 void setUp(void)
 {
@@ -20,13 +12,6 @@ static void start(rod *r, const rod_pose *base)
 {
     TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(r, &params, NULL));
     TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(r, base));
-}
-
-static void rest(rod *r, const rod_pose *base, int ticks_n)
-{
-    for (int i = 0; i < ticks_n; i++) {
-        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(r, base));
-    }
 }
 
 typedef struct {

@@ -1,16 +1,8 @@
 /* test_rod_motion.c - a rod swings on, comes to rest, and never leaves its stops, whatever a hand does. */
-#include "rod.h"
-#include "test_support.h"
-#include "unity.h"
+#include "rod_fixture.h"
 
 #include <stdbool.h>
 #include <stdio.h>
-
-static rod one, twin;
-static rod_params params;
-static vec3 nodes[ROD_MAX_LINKS + 1];
-
-static const rod_pose AT_ORIGIN = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
 
 void setUp(void)
 {
@@ -18,13 +10,6 @@ void setUp(void)
 }
 
 void tearDown(void) {}
-
-static void rest(rod *r, const rod_pose *base, int ticks_n)
-{
-    for (int i = 0; i < ticks_n; i++) {
-        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(r, base));
-    }
-}
 
 static double largest_angle(const rod *r)
 {
