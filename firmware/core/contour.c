@@ -4,12 +4,19 @@
 #include <float.h>
 #include <stddef.h>
 
+/* A rod of joints that have inertia has none at its nodes, and float32 would lose the softest ways to bend it among the
+ * stiffest: so each node gets this share of its joint's, for touching only. */
+#ifndef OWNV
+#define OWNV 1e-5f
+#endif
+static const float OWN_SHARE = OWNV;
+
 /* M's bands. K's are those of D1' beta D1 + D2' eta D2 + diag k, D1 and D2 the first and second
  * difference. The midpoint scheme averages K over three time levels, so a quarter of it is implicit; the
  * paper's takes the internal energy wholly implicit, spring and damper explicit (Eq. 5). */
-static int factor_system(const rod_params *params, penta *system)
+static int factor_system(const rod_params *params, float *diagonal, penta *system)
 {
-    float diagonal[ROD_MAX_LINKS], off1[ROD_MAX_LINKS], off2[ROD_MAX_LINKS];
+    float off1[ROD_MAX_LINKS], off2[ROD_MAX_LINKS];
     const int n = params->links_n;
     const bool paper = params->scheme == ROD_SCHEME_PAPER;
     const float half_dt = 0.5f * params->tick_s;
@@ -35,7 +42,8 @@ static int factor_system(const rod_params *params, penta *system)
 rod_error contour_prepare(contour *model, const rod_params *params, int *row_n)
 {
     penta system;
-    *row_n = factor_system(params, &system);
+    float diagonal[ROD_MAX_LINKS];
+    *row_n = factor_system(params, diagonal, &system);
     if (*row_n != 0) {
         return ROD_E_PIVOT; /* and the model is as it was */
     }
@@ -47,6 +55,7 @@ rod_error contour_prepare(contour *model, const rod_params *params, int *row_n)
     model->links_n = n;
     model->held_n = params->hold_n < n ? params->hold_n : n;
     model->paper_scheme = paper;
+    model->tick_s = dt;
     model->tick_squared_s2 = dt2;
     for (int i = 0; i < n; i++) {
         const float drag = 0.5f * dt * params->drag[i];
@@ -58,7 +67,13 @@ rod_error contour_prepare(contour *model, const rod_params *params, int *row_n)
             .smoothing = i + 1 < n ? dt2 * params->smoothing[i] : 0.0f,
             .limit_rad = params->limit_rad[i],
         };
+        const float per_length = 1.0f / params->length_m[i];
         model->length_m[i] = params->length_m[i];
+        model->joint_kg_m2[i] = diagonal[i];
+        model->link[i] =
+            (bending_link){.length_m = params->length_m[i],
+                           .per_length = per_length,
+                           .own_kg = OWN_SHARE * (diagonal[i] * per_length) * per_length};
         if (i < model->held_n) {
             model->held_momentum[i] = params->inertia[i] - drag;
             model->held_damper[i] = damper;

@@ -12,6 +12,7 @@
 #include "kinematics.h"
 #include "penta.h"
 #include "rod_params.h"
+#include "touch.h"
 
 /* What a step needs to know of joint i, with the tick folded in. */
 typedef struct {
@@ -29,6 +30,9 @@ typedef struct {
     float held_momentum[2]; /* mu - dt gamma / 2 of the held joints */
     float held_damper[2];   /* dt c / 2 */
     float length_m[ROD_MAX_LINKS];
+    float joint_kg_m2[ROD_MAX_LINKS]; /* M's diagonal, and what touching needs: */
+    bending_link link[ROD_MAX_LINKS];
+    float tick_s;
     contour_row row[ROD_MAX_LINKS];
     penta system; /* M */
 } contour;
@@ -55,6 +59,13 @@ void contour_base_motion(const contour *model, const rod_joint *angle_rad, const
 rod_error contour_step(const contour *model, const contour_state *from, contour_state *to,
                        const rod_motion *previous, const rod_motion *now,
                        const rod_joint *torque_nm);
+
+/* After a step from one base pose to the next: the joints turn so that no node is left in an object, and `contacts` is what
+ * touched. A node sticks while what its contact needs lies in the cone; it creeps a little, since nothing is
+ * remembered. */
+void contour_touch(const contour *model, const contour_state *from, contour_state *to,
+                   const rod_pose *base_from, const rod_pose *base_to, const scene *objects,
+                   touch_contacts *contacts);
 
 /* World forces on nodes 1 ... links_n to torques on the joints, by the transposed Jacobian.
  * nodes_m and forces_newton have links_n + 1 rows; a force on node 0 pushes the hand: no torque. */

@@ -5,32 +5,13 @@
 
 #include "elastic_private.h"
 
-/* Node 0 and the ghost node before it are given: their columns fall into two rows before the first. */
 int elastic_factor(const elastic *model, const float *stiffness, const float *tension,
                    penta *system)
 {
-    float diagonals[ROD_MAX_LINKS + 2], offs1[ROD_MAX_LINKS + 2], off2[ROD_MAX_LINKS];
-    float *const diagonal = diagonals + 2, *const off1 = offs1 + 2;
-    const elastic_row *row = model->row;
-    diagonal[-1] = diagonal[-2] = off1[-1] = 0.0f;
-    float before = row[0].per_length; /* the ghost link is as long as the first */
-    for (int j = 0; j < model->links_n; j++) {
-        const float here = row[j].per_length;
-        const float both = here + before;
-        const float far = stiffness[j] * here, near = stiffness[j] * before;
-        diagonal[j] = (row[j].mass_kg + row[j].drag) + far * here;
-        diagonal[j - 1] += (stiffness[j] * both) * both;
-        diagonal[j - 2] += near * before;
-        off1[j] = -(far * both);
-        off1[j - 1] -= near * both;
-        off2[j] = far * before;
-        const float held = tension != NULL && tension[j] > 0.0f ? tension[j] * here : 0.0f;
-        diagonal[j] += held;
-        diagonal[j - 1] += held;
-        off1[j] -= held;
-        before = here;
-    }
-    return penta_factor(system, model->links_n, diagonal, off1, off2);
+    bending_bands bands;
+    bending_assemble(model->link, model->links_n, stiffness, tension, &bands);
+    return penta_factor(system, model->links_n, bending_diagonal(&bands), bending_off1(&bands),
+                        bands.off2);
 }
 
 void elastic_straight_stiffness(const elastic *model, float *stiffness)
@@ -62,12 +43,14 @@ rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n)
     const float h_squared = model->h_s * model->h_s;
     model->fall_m = h_squared * params->gravity_m_s2;
     for (int i = 0; i < params->links_n; i++) {
+        const float drag = model->h_s * params->drag[i];
+        model->link[i] = (bending_link){.length_m = params->length_m[i],
+                                        .per_length = 1.0f / params->length_m[i],
+                                        .own_kg = params->mass_kg[i] + drag};
         model->row[i] = (elastic_row){
-            .length_m = params->length_m[i],
-            .per_length = 1.0f / params->length_m[i],
             .mass_kg = params->mass_kg[i],
             .per_mass = 1.0f / params->mass_kg[i],
-            .drag = model->h_s * params->drag[i],
+            .drag = drag,
             .spring = h_squared * params->spring[i],
             .damper = model->h_s * params->damper[i],
         };
@@ -106,7 +89,7 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
                    angles[ROD_PHI] - gained[ROD_PHI]);
         state->link[i] = now_frame.z;
         state->link_step[i] = vec3_scale(vec3_sub(now_frame.z, before_frame.z), share);
-        step_m = vec3_add_scaled(step_m, state->link_step[i], model->row[i].length_m);
+        step_m = vec3_add_scaled(step_m, state->link_step[i], model->link[i].length_m);
         state->speed_m_s[i] = vec3_scale(step_m, per_step);
         state->angle_rad[i][ROD_THETA] = angles[ROD_THETA];
         state->angle_rad[i][ROD_PHI] = angles[ROD_PHI];
@@ -141,6 +124,6 @@ void elastic_nodes(const elastic *model, const elastic_state *state, const rod_p
 {
     nodes_m[0] = base->position_m;
     for (int i = 0; i < model->links_n; i++) {
-        nodes_m[i + 1] = vec3_add_scaled(nodes_m[i], state->link[i], model->row[i].length_m);
+        nodes_m[i + 1] = vec3_add_scaled(nodes_m[i], state->link[i], model->link[i].length_m);
     }
 }

@@ -12,17 +12,18 @@
 #ifndef LIMBER_ELASTIC_H
 #define LIMBER_ELASTIC_H
 
+#include "bending.h"
 #include "kinematics.h"
 #include "rod_params.h"
+#include "touch.h"
 
-/* What a step needs to know of link i, the joint at its near end and the node at its far end, with
- * h = 2/3 of a step's time folded in. */
+/* What a step needs to know of the joint at link i's near end and of the node at its far end, with h = 2/3 of a step's
+ * time folded in. */
 typedef struct {
-    float length_m, per_length; /* l, 1 / l */
-    float mass_kg, per_mass;    /* m, 1 / m */
-    float drag;                 /* h gamma, kg */
-    float spring;               /* h^2 k, kg m^2 */
-    float damper;               /* h c, kg m^2 */
+    float mass_kg, per_mass; /* m, 1 / m */
+    float drag;              /* h gamma, kg */
+    float spring;            /* h^2 k, kg m^2 */
+    float damper;            /* h c, kg m^2 */
 } elastic_row;
 
 typedef struct {
@@ -30,7 +31,8 @@ typedef struct {
     int steps_n;      /* in a tick */
     float step_share; /* 1 / steps_n */
     float h_s, per_h;
-    float fall_m; /* h^2 g */
+    float fall_m;                     /* h^2 g */
+    bending_link link[ROD_MAX_LINKS]; /* own_kg: m + h gamma */
     elastic_row row[ROD_MAX_LINKS];
 } elastic;
 
@@ -63,12 +65,19 @@ void elastic_lay(const elastic *model, const rod_pose *base, const rod_motion *m
 void elastic_increments(const elastic *model, const rod_pose *base, const rod_motion *motion,
                         const elastic_state *state, rod_joint *increment_rad);
 
-/* One tick, in which the base goes from one pose to the next; previous: its motion in the tick before. forces_newton has links_n + 1 rows, one a
- * node (that on node 0 is the hand's affair), or is NULL. Returns false where Newton's method left a link more
+/* What acts on the rod from outside. */
+typedef struct {
+    const vec3 *
+        forces_newton; /* links_n + 1 rows, one a node (that on node 0 is the hand's affair); or NULL */
+    const scene *objects;     /* or NULL */
+    touch_contacts *contacts; /* with them: of the last step; becomes this one's */
+} elastic_outside;
+
+/* One tick, in which the base goes from one pose to the next; previous: its motion in the tick before. Returns false where Newton's method left a link more
  * than 1e-5 off its length, so that the lengths were made good from the base outwards at the price of some
  * momentum: a hostile tick. There is no failure, every result is finite. */
 bool elastic_step(const elastic *model, elastic_state *state, const rod_motion *previous,
-                  const rod_pose *from, const rod_pose *to, const vec3 *forces_newton);
+                  const rod_pose *from, const rod_pose *to, const elastic_outside *outside);
 
 /* Nodes 0 ... links_n in the world, m. */
 void elastic_nodes(const elastic *model, const elastic_state *state, const rod_pose *base,

@@ -17,7 +17,7 @@ static const float DAMPER_MAX = 600.0f;
  * two links turn against each other: what the curvature gains, less what it does where both turn
  * together, as they do across the joint (what lies along it) and about it (a joint does not twist: the
  * inner link's spin goes on to the outer). */
-static inline vec3 joint_moment(const elastic_row *row, const elastic_motion *near,
+static inline vec3 joint_moment(const elastic_row *row, float length_m, const elastic_motion *near,
                                 elastic_motion *far, elastic_joint *load)
 {
     const vec3 curvature = vec3_sub(far->link, near->link);
@@ -37,7 +37,7 @@ static inline vec3 joint_moment(const elastic_row *row, const elastic_motion *ne
     const float damper = row->damper * per_cos_squared;
 
     const vec3 normal = vec3_cross(near->unit, far->unit);
-    const float most = DAMPER_MAX * row->mass_kg * row->length_m * row->length_m;
+    const float most = DAMPER_MAX * row->mass_kg * length_m * length_m;
     const float share = damper <= most ? 1.0f : most / damper;
     load->fold = vec3_scale(normal, 0.5f * per_cos_squared);
     const float about = near->spin - vec3_dot(near->turn, load->fold);
@@ -62,9 +62,10 @@ static void add_moments(const elastic *model, const elastic_state *state, vec3 b
     float per_length_before = 0.0f;
     for (int i = 0; i < n; i++) {
         const elastic_row *row = &model->row[i];
+        const bending_link *link_i = &model->link[i];
         const vec3 speed = vec3_add_scaled(state->speed_m_s[i], state->speed_step[i], THIRD);
         const vec3 far_m = vec3_scale(speed, h);
-        const vec3 turn = vec3_scale(vec3_sub(far_m, near_m), row->per_length);
+        const vec3 turn = vec3_scale(vec3_sub(far_m, near_m), link_i->per_length);
         const vec3 link =
             vec3_add(state->link[i], vec3_add_scaled(turn, state->link_step[i], THIRD));
         float length;
@@ -72,7 +73,7 @@ static void add_moments(const elastic *model, const elastic_state *state, vec3 b
                               .unit = direction(link, state->link[i], &length),
                               .turn = turn,
                               .spin = 0.0f};
-        const vec3 moment = joint_moment(row, &near, &far, &o->joint[i]);
+        const vec3 moment = joint_moment(row, link_i->length_m, &near, &far, &o->joint[i]);
         o->link[i] = far.link;
         o->unit[i] = far.unit;
         o->tension[i] = state->tension[i] + state->tension_step[i];
@@ -84,8 +85,9 @@ static void add_moments(const elastic *model, const elastic_state *state, vec3 b
                 o->node[i - 2] = vec3_add(o->node[i - 2], pull);
             }
         }
-        pull_before = vec3_add_scaled(vec3_scale(moment, row->per_length), far.unit, o->tension[i]);
-        per_length_before = row->per_length;
+        pull_before =
+            vec3_add_scaled(vec3_scale(moment, link_i->per_length), far.unit, o->tension[i]);
+        per_length_before = link_i->per_length;
 
         vec3 force = vec3_scale(far_m, -row->drag);
         force.z -= row->mass_kg * model->fall_m;
@@ -111,7 +113,7 @@ static void add_torsion(const elastic *model, elastic_outcome *o)
     for (int i = model->links_n - 1; i >= 0; i--) {
         const elastic_joint *joint = &o->joint[i];
         const vec3 push =
-            vec3_scale(vec3_add(joint->fold, fold_after), torsion * model->row[i].per_length);
+            vec3_scale(vec3_add(joint->fold, fold_after), torsion * model->link[i].per_length);
         o->node[i] = vec3_add(o->node[i], push);
         if (i > 0) {
             o->node[i - 1] = vec3_sub(o->node[i - 1], push);

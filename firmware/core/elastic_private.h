@@ -14,10 +14,9 @@
 
 /* --- the matrix (elastic.c) ------------------------------------------------------------------------ */
 
-/* Factors m + h gamma + D' diag(stiffness) D, where row j of D is the curvature at joint j:
- * P_j / l_j - P_{j-1} (1 / l_j + 1 / l_{j-1}) + P_{j-2} / l_{j-1}. stiffness: h^2 k + h c of each joint,
- * kg m^2. tension (or NULL): h^2 times each link's pull, kg m; one that pulls holds its ends in line like a string's,
- * and left to the right-hand side alone would swing them over. Returns what penta_factor does. */
+/* The matrix of a step: m + h gamma, and the joints (bending.h) with stiffness h^2 k + h c, kg m^2. tension (or NULL):
+ * h^2 times each link's pull, kg m, which left to the right-hand side alone would swing the links over. Returns what
+ * penta_factor does. */
 int elastic_factor(const elastic *model, const float *stiffness, const float *tension,
                    penta *system);
 
@@ -53,6 +52,18 @@ typedef struct {
  * bar; base: its axis, as if it were a link. forces_newton: external ones, or NULL. */
 void elastic_predict(const elastic *model, const elastic_state *state, vec3 base_turn_m,
                      elastic_motion base, const vec3 *forces_newton, elastic_outcome *o);
+
+/* --- objects (elastic_touch.c) ---------------------------------------------------------------------- */
+
+/* The points that may touch in a step from a state to its prediction; base from, base to. */
+void elastic_touch_find(const elastic *model, const elastic_state *state, const elastic_outcome *o,
+                        vec3 from_m, vec3 to_m, const elastic_outside *outside,
+                        touch_points *points);
+
+/* A state after its step, without the motion that ended at an object: BDF2 remembers how the nodes moved, and would have
+ * them rebound. */
+void elastic_touch_settle(const elastic *model, const touch_points *points, vec3 base_step_m,
+                          elastic_state *state);
 
 /* The direction of v, and its length; `otherwise` where it has none to speak of, or is nowhere. */
 static inline vec3 direction(vec3 v, vec3 otherwise, float *length)

@@ -5,6 +5,7 @@
 #include "elastic.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #include "base_path.h"
 #include "elastic_private.h"
@@ -14,29 +15,71 @@ static const float LENGTH_ERROR_GOOD = 1e-6f;
 /* ... or after so many steps; what is then further off than this is reported. */
 static const float LENGTH_ERROR_MAX = 1e-5f;
 enum { LENGTH_STEPS_MAX = 3 };
+/* How stiff a link is along itself where the rod touches, so many times what its node is in the matrix. */
+static const float LENGTH_HOLD = 100.0f;
 
 static vec3 axis_of(const rod_pose *pose)
 {
     return quat_rotate(pose->orientation, (vec3){0.0f, 0.0f, 1.0f});
 }
 
-/* Forces to displacements. Of the tension the matrix holds what lasts, the least of the last two steps and the next: a
- * jump's, of one step, would stiffen a rod that is slack by then. Where a folded joint's secant is too stiff for
- * float32 beside the rest, the matrix of the straight rod, which elastic_prepare has found good, serves. */
+/* The matrix of a step. Of the tension it holds what lasts, the least of the last two steps and the next: a jump's, of one
+ * step, would stiffen a rod that is slack by then. */
+typedef struct {
+    float stiffness[ROD_MAX_LINKS], lasting[ROD_MAX_LINKS];
+} step_stiffness;
+
+static void stiffness_of(const elastic *model, const elastic_state *state, const elastic_outcome *o,
+                         step_stiffness *s)
+{
+    for (int i = 0; i < model->links_n; i++) {
+        s->stiffness[i] = o->joint[i].stiffness;
+        s->lasting[i] = state->tension[i] - trig_abs(state->tension_step[i]);
+    }
+}
+
+/* Forces to displacements. Where a folded joint's secant is too stiff for float32 beside the rest, the matrix of the
+ * straight rod, which elastic_prepare has found good, serves. */
 static __attribute__((noinline)) void solve(const elastic *model, const elastic_state *state,
                                             elastic_outcome *o)
 {
     penta system;
-    float stiffness[ROD_MAX_LINKS], lasting[ROD_MAX_LINKS];
-    for (int i = 0; i < model->links_n; i++) {
-        stiffness[i] = o->joint[i].stiffness;
-        lasting[i] = state->tension[i] - trig_abs(state->tension_step[i]);
-    }
-    if (elastic_factor(model, stiffness, lasting, &system) != 0) {
-        elastic_straight_stiffness(model, stiffness);
-        (void)elastic_factor(model, stiffness, NULL, &system);
+    step_stiffness s;
+    stiffness_of(model, state, o, &s);
+    if (elastic_factor(model, s.stiffness, s.lasting, &system) != 0) {
+        elastic_straight_stiffness(model, s.stiffness);
+        (void)elastic_factor(model, s.stiffness, NULL, &system);
     }
     penta_solve3(&system, (float(*)[3])(void *)o->node); /* a vec3 is three floats */
+}
+
+/* The same among contacts. False, with nothing changed, where float32 cannot. */
+static __attribute__((noinline)) bool solve_touching(const elastic *model,
+                                                     const elastic_state *state, elastic_outcome *o,
+                                                     touch_points *points)
+{
+    const int n = model->links_n;
+    bending_bands bands;
+    step_stiffness s;
+    vec3 displacement_m[ROD_MAX_LINKS];
+    float tension[ROD_MAX_LINKS];
+    memcpy(tension, o->tension, (size_t)n * sizeof *tension);
+    stiffness_of(model, state, o, &s);
+    bending_assemble(model->link, n, s.stiffness, s.lasting, &bands);
+    const touch_system system = {.nodes_n = n,
+                                 .diagonal = bending_diagonal(&bands),
+                                 .off1 = bending_off1(&bands),
+                                 .off2 = bands.off2,
+                                 .link = model->link,
+                                 .hold = LENGTH_HOLD,
+                                 .force = o->node,
+                                 .along = o->link};
+    if (!touch_solve(&system, points, displacement_m, tension)) {
+        return false;
+    }
+    memcpy(o->node, displacement_m, (size_t)n * sizeof *displacement_m);
+    memcpy(o->tension, tension, (size_t)n * sizeof *tension);
+    return true;
 }
 
 /* The links as the nodes now stand: their directions, and what each has too much in length, m. Returns
@@ -46,7 +89,7 @@ static float measure(const elastic *model, elastic_outcome *o, float *excess_m)
     float worst = 0.0f;
     vec3 near_m = {0.0f, 0.0f, 0.0f};
     for (int i = 0; i < model->links_n; i++) {
-        const elastic_row *row = &model->row[i];
+        const bending_link *row = &model->link[i];
         const vec3 link =
             vec3_add_scaled(o->link[i], vec3_sub(o->node[i], near_m), row->per_length);
         float length;
@@ -138,8 +181,59 @@ static float spin_of(const rod_pose *from, const rod_pose *to, vec3 axis)
     return twice * vec3_dot((vec3){turn.x, turn.y, turn.z}, axis);
 }
 
+/* Newton's method on the lengths. Returns whether they are found. */
+static bool find_lengths(const elastic *model, elastic_outcome *o)
+{
+    float excess_m[ROD_MAX_LINKS];
+    float worst = measure(model, o, excess_m);
+    for (int i = 0; i < LENGTH_STEPS_MAX; i++) {
+        shorten(model, o, excess_m);
+        worst = measure(model, o, excess_m);
+        if (worst <= LENGTH_ERROR_GOOD) {
+            break;
+        }
+    }
+    return worst <= LENGTH_ERROR_MAX;
+}
+
+static bool finish(const elastic *model, elastic_state *state, vec3 base_turn_m, elastic_outcome *o)
+{
+    solve(model, state, o);
+    const bool found = find_lengths(model, o);
+    if (found) {
+        take_over(model, o, state);
+    } else {
+        restore(model, o, base_turn_m, state);
+    }
+    return found;
+}
+
+/* The same among objects. Not inlined: a rod without any does not pay for its stack. */
+static __attribute__((noinline)) bool finish_touching(const elastic *model, elastic_state *state,
+                                                      const rod_pose *from, const rod_pose *to,
+                                                      vec3 base_turn_m,
+                                                      const elastic_outside *outside,
+                                                      elastic_outcome *o)
+{
+    touch_points points;
+    elastic_touch_find(model, state, o, from->position_m, to->position_m, outside, &points);
+    if (points.points_n == 0 || !solve_touching(model, state, o, &points)) {
+        outside->contacts->contacts_n = 0;
+        return finish(model, state, base_turn_m, o);
+    }
+    if (!find_lengths(model, o)) {
+        outside->contacts->contacts_n = 0;
+        restore(model, o, base_turn_m, state);
+        return false;
+    }
+    take_over(model, o, state);
+    elastic_touch_settle(model, &points, vec3_sub(to->position_m, from->position_m), state);
+    touch_remember(&points, model->h_s * model->h_s, outside->contacts);
+    return true;
+}
+
 static bool step_once(const elastic *model, elastic_state *state, const rod_pose *from,
-                      const rod_pose *to, const vec3 *forces_newton)
+                      const rod_pose *to, const elastic_outside *outside)
 {
     const vec3 axis = axis_of(to);
     const vec3 axis_step = vec3_sub(axis, axis_of(from));
@@ -154,23 +248,10 @@ static bool step_once(const elastic *model, elastic_state *state, const rod_pose
                            .spin = spin_step - THIRD * state->spin_step};
 
     elastic_outcome o;
-    elastic_predict(model, state, base_turn_m, base, forces_newton, &o);
-    solve(model, state, &o);
-    float excess_m[ROD_MAX_LINKS];
-    float worst = measure(model, &o, excess_m);
-    for (int i = 0; i < LENGTH_STEPS_MAX; i++) {
-        shorten(model, &o, excess_m);
-        worst = measure(model, &o, excess_m);
-        if (worst <= LENGTH_ERROR_GOOD) {
-            break;
-        }
-    }
-    const bool found = worst <= LENGTH_ERROR_MAX;
-    if (found) {
-        take_over(model, &o, state);
-    } else {
-        restore(model, &o, base_turn_m, state);
-    }
+    elastic_predict(model, state, base_turn_m, base, outside->forces_newton, &o);
+    const bool found = outside->objects != NULL
+                           ? finish_touching(model, state, from, to, base_turn_m, outside, &o)
+                           : finish(model, state, base_turn_m, &o);
     state->axis_step = axis_step;
     state->spin_step = spin_step;
     state->base_step_m = base_step_m;
@@ -178,7 +259,7 @@ static bool step_once(const elastic *model, elastic_state *state, const rod_pose
 }
 
 bool elastic_step(const elastic *model, elastic_state *state, const rod_motion *previous,
-                  const rod_pose *from, const rod_pose *to, const vec3 *forces_newton)
+                  const rod_pose *from, const rod_pose *to, const elastic_outside *outside)
 {
     bool found = true;
     rod_pose here = *from;
@@ -187,11 +268,11 @@ bool elastic_step(const elastic *model, elastic_state *state, const rod_motion *
         const base_path path = base_path_between(&before, from, to);
         for (int i = 1; i < model->steps_n; i++) {
             const rod_pose next = base_path_pose(&path, (float)i * model->step_share);
-            found = step_once(model, state, &here, &next, forces_newton) && found;
+            found = step_once(model, state, &here, &next, outside) && found;
             here = next;
         }
     }
-    found = step_once(model, state, &here, to, forces_newton) && found;
+    found = step_once(model, state, &here, to, outside) && found;
     kinematics_angles(to, state->link, model->links_n, state->angle_rad);
     return found;
 }

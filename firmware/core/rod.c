@@ -48,6 +48,7 @@ rod_error rod_init(rod *r, const rod_params *params, rod_refusal *refusal)
         put_in_place(r, &model, params);
         r->restored_n = 0;
         rod_set_force(r, NULL, NULL);
+        rod_set_scene(r, NULL);
         rod_reset(r);
     }
     return error;
@@ -146,6 +147,7 @@ void rod_reset(rod *r)
     joints straight_at_rest;
     memset(&straight_at_rest, 0, sizeof straight_at_rest);
     r->swept = 0;
+    r->contacts.contacts_n = 0;
     r->started = false;
     r->base = (rod_pose){{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
     r->motion = NO_MOTION;
@@ -156,6 +158,23 @@ void rod_set_force(rod *r, rod_force_fn force, void *context)
 {
     r->force = force;
     r->force_context = context;
+}
+
+void rod_set_scene(rod *r, const scene *objects)
+{
+    r->objects = objects;
+}
+
+const touch_contact *rod_contacts(const rod *r, int *contacts_n)
+{
+    *contacts_n = r->contacts.contacts_n;
+    return r->contacts.contact;
+}
+
+rod_error rod_set_shape(rod *r, const rod_joint *angle_rad, float strength_nm, float blend_s)
+{
+    (void)r, (void)angle_rad, (void)strength_nm, (void)blend_s;
+    return ROD_OK; /* being written */
 }
 
 static bool is_pose(const rod_pose *pose)
@@ -205,29 +224,36 @@ static __attribute__((noinline)) rod_error external_torques(const rod *r, rod_jo
     return ROD_OK;
 }
 
-static rod_error step_contour(rod *r, const rod_motion *now, const rod_joint *torque_nm)
+static rod_error step_contour(rod *r, const rod_pose *base, const rod_motion *now,
+                              const rod_joint *torque_nm)
 {
-    const int current = r->as.contour.current;
-    contour_state *state = r->as.contour.state;
-    const rod_error error = contour_step(&r->as.contour.model, &state[current], &state[1 - current],
-                                         &r->motion, now, torque_nm);
+    const contour *model = &r->as.contour.model;
+    contour_state *from = &r->as.contour.state[r->as.contour.current];
+    contour_state *to = &r->as.contour.state[1 - r->as.contour.current];
+    const rod_error error = contour_step(model, from, to, &r->motion, now, torque_nm);
     if (error == ROD_OK) {
-        r->as.contour.current = 1 - current;
+        if (r->objects != NULL) {
+            contour_touch(model, from, to, &r->base, base, r->objects, &r->contacts);
+        }
+        r->as.contour.current = 1 - r->as.contour.current;
     }
     return error;
 }
 
-static __attribute__((noinline)) rod_error step_contour_with_force(rod *r, const rod_motion *now)
+static __attribute__((noinline)) rod_error step_contour_with_force(rod *r, const rod_pose *base,
+                                                                   const rod_motion *now)
 {
     rod_joint torque_nm[ROD_MAX_LINKS];
     const rod_error error = external_torques(r, torque_nm);
-    return error == ROD_OK ? step_contour(r, now, (const rod_joint *)torque_nm) : error;
+    return error == ROD_OK ? step_contour(r, base, now, (const rod_joint *)torque_nm) : error;
 }
 
 static rod_error step_elastic(rod *r, const rod_pose *base, const vec3 *forces_newton)
 {
+    const elastic_outside outside = {
+        .forces_newton = forces_newton, .objects = r->objects, .contacts = &r->contacts};
     const bool found = elastic_step(&r->as.elastic.model, &r->as.elastic.state, &r->motion,
-                                    &r->base, base, forces_newton);
+                                    &r->base, base, &outside);
     r->restored_n += found ? 0 : 1;
     return ROD_OK;
 }
@@ -295,7 +321,8 @@ rod_error rod_step(rod *r, const rod_pose *base)
     if (is_elastic(r)) {
         error = r->force != NULL ? step_elastic_with_force(r, base) : step_elastic(r, base, NULL);
     } else {
-        error = r->force != NULL ? step_contour_with_force(r, &now) : step_contour(r, &now, NULL);
+        error = r->force != NULL ? step_contour_with_force(r, base, &now)
+                                 : step_contour(r, base, &now, NULL);
     }
     if (error == ROD_OK) {
         r->base = *base;

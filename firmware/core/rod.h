@@ -27,6 +27,8 @@
 #include "kinematics.h"
 #include "presets.h"
 #include "rod_params.h"
+#include "scene.h"
+#include "touch.h"
 
 /* An external energy, as world forces on the nodes: objects touched, wind, a shape to take. Reads
  * nodes 0 ... nodes_n - 1 (m, world) and writes as many forces (N), all zero beforehand. Called once
@@ -55,6 +57,8 @@ typedef struct {
     rod_motion motion; /* of the base, in the last tick */
     rod_force_fn force;
     void *force_context;
+    const scene *objects;
+    touch_contacts contacts;
 } rod;
 
 /* Check, prepare, and lay the rod straight and at rest. *refusal (may be NULL) says what was wrong.
@@ -70,6 +74,21 @@ void rod_reset(rod *r);
 
 /* External forces from now on; NULL for none (as after rod_init). */
 void rod_set_force(rod *r, rod_force_fn force, void *context);
+
+/* Objects to touch from now on; NULL for none (as after rod_init). The scene stays the caller's, who may change it
+ * between two steps: an object may appear, move and vanish at any time. One that moves is taken as
+ * standing still in each step; nodes that find themselves inside one are let out at TOUCH_ESCAPE_M_S. */
+void rod_set_scene(rod *r, const scene *objects);
+
+/* What touched in the last step: *contacts_n of them, by node, at most two a node. A force is what the object pushes the
+ * node with, N, in the world. Points into the rod; valid until the next call that takes a non-const rod. */
+const touch_contact *rod_contacts(const rod *r, int *contacts_n);
+
+/* A shape to take, as joint angles (links_n rows; the stops bound them): strength_nm pulls each joint (contour) or link
+ * (elastic) towards it like a spring of so many N m. 0 N m or NULL lets the rod go. The change is blended in over blend_s,
+ * smoothly; a shape given meanwhile starts from what is in force. Survives rod_reset, not a change of links_n.
+ * Errors: ROD_E_SHAPE for an angle beyond +-pi, a strength beyond 0 ... 1e6 or a blend beyond 0 ... 60 s. */
+rod_error rod_set_shape(rod *r, const rod_joint *angle_rad, float strength_nm, float blend_s);
 
 /* One tick: the base is now here. The first step after rod_init or rod_reset only takes the pose.
  * The quaternion must be of unit length to 1e-3: to what it is off, links are off in rod_nodes. Errors: ROD_E_POSE, ROD_E_FORCE, ROD_E_NOT_FINITE.

@@ -93,6 +93,8 @@ static const char *const ERROR_TEXT[] = {
     "the step's result is not finite",
     "mass is out of bounds",
     "gravity is out of bounds",
+    "an object is of no known kind, or one of its numbers is out of bounds",
+    "a shape's angle, strength or blend is out of bounds",
 };
 
 const char *rod_error_text(rod_error error)

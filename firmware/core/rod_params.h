@@ -38,6 +38,8 @@ typedef enum {
     ROD_E_NOT_FINITE = -18, /* the step's result is not finite */
     ROD_E_MASS = -19,
     ROD_E_GRAVITY = -20,
+    ROD_E_OBJECT = -21, /* of a scene: see scene_refusal */
+    ROD_E_SHAPE = -22,
 } rod_error;
 
 /* One clear sentence for each error; never NULL. */

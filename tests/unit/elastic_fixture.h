@@ -51,7 +51,8 @@ static inline void lay(elastic_state *s, const rod_pose *base, const rod_joint *
 static inline bool step_pushed(elastic_state *s, const rod_pose *from, const rod_pose *to,
                                const vec3 *forces_newton)
 {
-    return elastic_step(&model, s, &STILL, from, to, forces_newton);
+    const elastic_outside outside = {.forces_newton = forces_newton};
+    return elastic_step(&model, s, &STILL, from, to, &outside);
 }
 
 static inline bool step(elastic_state *s, const rod_pose *from, const rod_pose *to)

@@ -13,8 +13,8 @@ import elf
 import stack
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-FLASH_MAX_BYTES = 96 * 1024
-SRAM_MAX_BYTES = 48 * 1024  # the stack beside it
+FLASH_MAX_BYTES = 128 * 1024
+SRAM_MAX_BYTES = 64 * 1024  # the stack beside it
 # Handlers that change to a stack of their own, and its ends: symbols of the linker script
 OWN_STACK = {"fault_handler": ("fault_stack_bottom", "fault_stack_top")}
 
