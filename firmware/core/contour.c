@@ -14,7 +14,7 @@ static const float OWN_SHARE = OWNV;
 /* M's bands. K's are those of D1' beta D1 + D2' eta D2 + diag k, D1 and D2 the first and second
  * difference. The midpoint scheme averages K over three time levels, so a quarter of it is implicit; the
  * paper's takes the internal energy wholly implicit, spring and damper explicit (Eq. 5). */
-static int factor_system(const rod_params *params, float *diagonal, penta *system)
+static int factor_system(const rod_params *params, float shape_nm, float *diagonal, penta *system)
 {
     float off1[ROD_MAX_LINKS], off2[ROD_MAX_LINKS];
     const int n = params->links_n;
@@ -28,7 +28,7 @@ static int factor_system(const rod_params *params, float *diagonal, penta *syste
         const float eta_here = i + 1 < n ? eta[i] : 0.0f;
         const float eta_after = i + 2 < n ? eta[i + 1] : 0.0f;
         const float beta_after = i + 1 < n ? beta[i + 1] : 0.0f;
-        const float spring = paper ? 0.0f : params->spring[i];
+        const float spring = paper ? 0.0f : params->spring[i] + shape_nm;
         const float rate = params->drag[i] + (paper ? 0.0f : params->damper[i]);
         diagonal[i] =
             params->inertia[i] + half_dt * rate +
@@ -39,11 +39,11 @@ static int factor_system(const rod_params *params, float *diagonal, penta *syste
     return penta_factor(system, n, diagonal, off1, off2);
 }
 
-rod_error contour_prepare(contour *model, const rod_params *params, int *row_n)
+rod_error contour_prepare(contour *model, const rod_params *params, float shape_nm, int *row_n)
 {
     penta system;
     float diagonal[ROD_MAX_LINKS];
-    *row_n = factor_system(params, diagonal, &system);
+    *row_n = factor_system(params, shape_nm, diagonal, &system);
     if (*row_n != 0) {
         return ROD_E_PIVOT; /* and the model is as it was */
     }
@@ -62,7 +62,7 @@ rod_error contour_prepare(contour *model, const rod_params *params, int *row_n)
         const float damper = 0.5f * dt * params->damper[i];
         model->row[i] = (contour_row){
             .momentum = params->inertia[i] - drag - (paper ? 2.0f * damper : damper),
-            .spring = dt2 * params->spring[i],
+            .spring = dt2 * (params->spring[i] + shape_nm),
             .coupling = dt2 * params->coupling[i],
             .smoothing = i + 1 < n ? dt2 * params->smoothing[i] : 0.0f,
             .limit_rad = params->limit_rad[i],

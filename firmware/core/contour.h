@@ -43,9 +43,10 @@ typedef struct {
     rod_joint increment_rad[ROD_MAX_LINKS + 1]; /* g: what the last step added to x */
 } contour_state;
 
-/* Fold and factor; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n
+/* Fold and factor; params have passed rod_params_check. shape_nm: what a shape adds to every spring; its pull comes with
+ * torque_nm. Returns ROD_OK, or ROD_E_PIVOT with *row_n
  * set to the 1-based row and *model as it was. */
-rod_error contour_prepare(contour *model, const rod_params *params, int *row_n);
+rod_error contour_prepare(contour *model, const rod_params *params, float shape_nm, int *row_n);
 
 /* How much the held joints' angles change when the base moves while the links' far ends stay where
  * they are (Eqs. 9 and 10, exact for any step): what the hand does to the rod. Fills

@@ -67,10 +67,12 @@ void elastic_increments(const elastic *model, const rod_pose *base, const rod_mo
 
 /* What acts on the rod from outside. */
 typedef struct {
-    const vec3 *
-        forces_newton; /* links_n + 1 rows, one a node (that on node 0 is the hand's affair); or NULL */
-    const scene *objects;     /* or NULL */
-    touch_contacts *contacts; /* with them: of the last step; becomes this one's */
+    const vec3 *forces_newton; /* links_n + 1 rows, one a node (that on node 0 is the hand's
+                                  affair); or NULL */
+    const scene *objects;      /* or NULL */
+    touch_contacts *contacts;  /* with them: of the last step; becomes this one's */
+    const vec3 *shape; /* the directions that links are drawn to, in the base's axes; or NULL */
+    float shape_nm;    /* with them: how strongly */
 } elastic_outside;
 
 /* One tick, in which the base goes from one pose to the next; previous: its motion in the tick before. Returns false where Newton's method left a link more

@@ -123,9 +123,29 @@ static void add_torsion(const elastic *model, elastic_outcome *o)
     }
 }
 
-void elastic_predict(const elastic *model, const elastic_state *state, vec3 base_turn_m,
-                     elastic_motion base, const vec3 *forces_newton, elastic_outcome *o)
+/* The links' directions as they are wanted; what holds a link there in the matrix is solve()'s. */
+static void add_shape(const elastic *model, quat orientation, const elastic_outside *outside,
+                      elastic_outcome *o)
 {
-    add_moments(model, state, base_turn_m, base, forces_newton, o);
+    const frame3 axes = quat_frame(orientation);
+    const float strength = model->h_s * model->h_s * outside->shape_nm;
+    for (int i = 0; i < model->links_n; i++) {
+        const vec3 missing = vec3_sub(frame3_to_parent(&axes, outside->shape[i]), o->link[i]);
+        const vec3 pull = vec3_scale(missing, strength * model->link[i].per_length);
+        o->node[i] = vec3_add(o->node[i], pull);
+        if (i > 0) {
+            o->node[i - 1] = vec3_sub(o->node[i - 1], pull);
+        }
+    }
+}
+
+void elastic_predict(const elastic *model, const elastic_state *state, vec3 base_turn_m,
+                     elastic_motion base, quat orientation, const elastic_outside *outside,
+                     elastic_outcome *o)
+{
+    add_moments(model, state, base_turn_m, base, outside->forces_newton, o);
     add_torsion(model, o);
+    if (outside->shape != NULL) {
+        add_shape(model, orientation, outside, o);
+    }
 }

@@ -49,9 +49,10 @@ typedef struct {
 } elastic_motion;
 
 /* Where the nodes go if nothing acts on them, and the forces on them there. base_turn_m: how far the base goes beyond
- * bar; base: its axis, as if it were a link. forces_newton: external ones, or NULL. */
+ * bar; base: its axis, as if it were a link; orientation: where it ends. */
 void elastic_predict(const elastic *model, const elastic_state *state, vec3 base_turn_m,
-                     elastic_motion base, const vec3 *forces_newton, elastic_outcome *o);
+                     elastic_motion base, quat orientation, const elastic_outside *outside,
+                     elastic_outcome *o);
 
 /* --- objects (elastic_touch.c) ---------------------------------------------------------------------- */
 

@@ -29,34 +29,44 @@ typedef struct {
     float stiffness[ROD_MAX_LINKS], lasting[ROD_MAX_LINKS];
 } step_stiffness;
 
-static void stiffness_of(const elastic *model, const elastic_state *state, const elastic_outcome *o,
+static void stiffness_of(const elastic *model, const elastic_state *state,
+                         const elastic_outside *outside, const elastic_outcome *o,
                          step_stiffness *s)
 {
     for (int i = 0; i < model->links_n; i++) {
         s->stiffness[i] = o->joint[i].stiffness;
         s->lasting[i] = state->tension[i] - trig_abs(state->tension_step[i]);
     }
+    if (outside->shape != NULL) { /* a link drawn to a direction is held there like a string's */
+        const float strength = model->h_s * model->h_s * outside->shape_nm;
+        for (int i = 0; i < model->links_n; i++) {
+            const float lasting = s->lasting[i] > 0.0f ? s->lasting[i] : 0.0f;
+            s->lasting[i] = lasting + strength * model->link[i].per_length;
+        }
+    }
 }
 
 /* Forces to displacements. Where a folded joint's secant is too stiff for float32 beside the rest, the matrix of the
  * straight rod, which elastic_prepare has found good, serves. */
 static __attribute__((noinline)) void solve(const elastic *model, const elastic_state *state,
-                                            elastic_outcome *o)
+                                            const elastic_outside *outside, elastic_outcome *o)
 {
     penta system;
     step_stiffness s;
-    stiffness_of(model, state, o, &s);
+    stiffness_of(model, state, outside, o, &s);
     if (elastic_factor(model, s.stiffness, s.lasting, &system) != 0) {
         elastic_straight_stiffness(model, s.stiffness);
-        (void)elastic_factor(model, s.stiffness, NULL, &system);
+        (void)elastic_factor(model, s.stiffness, outside->shape != NULL ? s.lasting : NULL,
+                             &system);
     }
     penta_solve3(&system, (float(*)[3])(void *)o->node); /* a vec3 is three floats */
 }
 
 /* The same among contacts. False, with nothing changed, where float32 cannot. */
 static __attribute__((noinline)) bool solve_touching(const elastic *model,
-                                                     const elastic_state *state, elastic_outcome *o,
-                                                     touch_points *points)
+                                                     const elastic_state *state,
+                                                     const elastic_outside *outside,
+                                                     elastic_outcome *o, touch_points *points)
 {
     const int n = model->links_n;
     bending_bands bands;
@@ -64,7 +74,7 @@ static __attribute__((noinline)) bool solve_touching(const elastic *model,
     vec3 displacement_m[ROD_MAX_LINKS];
     float tension[ROD_MAX_LINKS];
     memcpy(tension, o->tension, (size_t)n * sizeof *tension);
-    stiffness_of(model, state, o, &s);
+    stiffness_of(model, state, outside, o, &s);
     bending_assemble(model->link, n, s.stiffness, s.lasting, &bands);
     const touch_system system = {.nodes_n = n,
                                  .diagonal = bending_diagonal(&bands),
@@ -196,9 +206,10 @@ static bool find_lengths(const elastic *model, elastic_outcome *o)
     return worst <= LENGTH_ERROR_MAX;
 }
 
-static bool finish(const elastic *model, elastic_state *state, vec3 base_turn_m, elastic_outcome *o)
+static bool finish(const elastic *model, elastic_state *state, vec3 base_turn_m,
+                   const elastic_outside *outside, elastic_outcome *o)
 {
-    solve(model, state, o);
+    solve(model, state, outside, o);
     const bool found = find_lengths(model, o);
     if (found) {
         take_over(model, o, state);
@@ -217,9 +228,9 @@ static __attribute__((noinline)) bool finish_touching(const elastic *model, elas
 {
     touch_points points;
     elastic_touch_find(model, state, o, from->position_m, to->position_m, outside, &points);
-    if (points.points_n == 0 || !solve_touching(model, state, o, &points)) {
+    if (points.points_n == 0 || !solve_touching(model, state, outside, o, &points)) {
         outside->contacts->contacts_n = 0;
-        return finish(model, state, base_turn_m, o);
+        return finish(model, state, base_turn_m, outside, o);
     }
     if (!find_lengths(model, o)) {
         outside->contacts->contacts_n = 0;
@@ -248,10 +259,10 @@ static bool step_once(const elastic *model, elastic_state *state, const rod_pose
                            .spin = spin_step - THIRD * state->spin_step};
 
     elastic_outcome o;
-    elastic_predict(model, state, base_turn_m, base, outside->forces_newton, &o);
+    elastic_predict(model, state, base_turn_m, base, to->orientation, outside, &o);
     const bool found = outside->objects != NULL
                            ? finish_touching(model, state, from, to, base_turn_m, outside, &o)
-                           : finish(model, state, base_turn_m, &o);
+                           : finish(model, state, base_turn_m, outside, &o);
     state->axis_step = axis_step;
     state->spin_step = spin_step;
     state->base_step_m = base_step_m;

@@ -8,13 +8,20 @@ static bool is_elastic(const rod *r)
     return r->params.model == ROD_MODEL_ELASTIC;
 }
 
+/* The paper's scheme takes springs explicitly: a strong shape would throw the rod about. */
+static bool may_have_shape(const rod_params *params)
+{
+    return params->model == ROD_MODEL_ELASTIC || params->scheme == ROD_SCHEME_MIDPOINT;
+}
+
 /* A model made ready, before it takes its place. */
 typedef union {
     contour contour;
     elastic elastic;
 } prepared;
 
-static rod_error prepare(prepared *model, const rod_params *params, rod_refusal *refusal)
+static rod_error prepare(prepared *model, const rod_params *params, float shape_nm,
+                         rod_refusal *refusal)
 {
     const rod_error error = rod_params_check(params, refusal);
     if (error != ROD_OK) {
@@ -23,7 +30,7 @@ static rod_error prepare(prepared *model, const rod_params *params, rod_refusal 
     int row_n;
     const rod_error pivot = params->model == ROD_MODEL_ELASTIC
                                 ? elastic_prepare(&model->elastic, params, &row_n)
-                                : contour_prepare(&model->contour, params, &row_n);
+                                : contour_prepare(&model->contour, params, shape_nm, &row_n);
     if (pivot != ROD_OK && refusal != NULL) {
         *refusal = (rod_refusal){pivot, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
     }
@@ -43,9 +50,10 @@ static void put_in_place(rod *r, const prepared *model, const rod_params *params
 rod_error rod_init(rod *r, const rod_params *params, rod_refusal *refusal)
 {
     prepared model;
-    const rod_error error = prepare(&model, params, refusal);
+    const rod_error error = prepare(&model, params, 0.0f, refusal);
     if (error == ROD_OK) {
         put_in_place(r, &model, params);
+        memset(&r->shape, 0, sizeof r->shape);
         r->restored_n = 0;
         rod_set_force(r, NULL, NULL);
         rod_set_scene(r, NULL);
@@ -118,9 +126,13 @@ static bool is_same_shape(const rod_params *a, const rod_params *b)
 rod_error rod_set_params(rod *r, const rod_params *params, rod_refusal *refusal)
 {
     prepared model;
-    const rod_error error = prepare(&model, params, refusal);
+    const bool shaped = may_have_shape(params) && params->links_n == r->params.links_n;
+    const rod_error error = prepare(&model, params, shaped ? r->shape.strength_nm : 0.0f, refusal);
     if (error != ROD_OK) {
         return error;
+    }
+    if (!shaped) {
+        memset(&r->shape, 0, sizeof r->shape);
     }
     if (is_elastic(r) && params->model == ROD_MODEL_ELASTIC && is_same_shape(&r->params, params)) {
         put_in_place(r, &model, params);
@@ -163,6 +175,7 @@ void rod_set_force(rod *r, rod_force_fn force, void *context)
 void rod_set_scene(rod *r, const scene *objects)
 {
     r->objects = objects;
+    r->contacts.contacts_n = objects != NULL ? r->contacts.contacts_n : 0;
 }
 
 const touch_contact *rod_contacts(const rod *r, int *contacts_n)
@@ -173,8 +186,10 @@ const touch_contact *rod_contacts(const rod *r, int *contacts_n)
 
 rod_error rod_set_shape(rod *r, const rod_joint *angle_rad, float strength_nm, float blend_s)
 {
-    (void)r, (void)angle_rad, (void)strength_nm, (void)blend_s;
-    return ROD_OK; /* being written */
+    return may_have_shape(&r->params)
+               ? shape_set(&r->shape, angle_rad, rod_angles(r), r->params.links_n, strength_nm,
+                           blend_s, r->params.tick_s)
+               : ROD_E_SHAPE;
 }
 
 static bool is_pose(const rod_pose *pose)
@@ -224,6 +239,20 @@ static __attribute__((noinline)) rod_error external_torques(const rod *r, rod_jo
     return ROD_OK;
 }
 
+static bool is_shaped(const rod *r)
+{
+    return r->shape.strength_nm > 0.0f;
+}
+
+/* contour's matrix holds the shape's stiffness: factored anew while it changes. Where float32 cannot, it stays. */
+static void step_shape(rod *r)
+{
+    int row_n;
+    if (shape_advance(&r->shape, r->params.links_n) && !is_elastic(r)) {
+        (void)contour_prepare(&r->as.contour.model, &r->params, r->shape.strength_nm, &row_n);
+    }
+}
+
 static rod_error step_contour(rod *r, const rod_pose *base, const rod_motion *now,
                               const rod_joint *torque_nm)
 {
@@ -240,29 +269,47 @@ static rod_error step_contour(rod *r, const rod_pose *base, const rod_motion *no
     return error;
 }
 
-static __attribute__((noinline)) rod_error step_contour_with_force(rod *r, const rod_pose *base,
-                                                                   const rod_motion *now)
+/* External forces, and a shape: it pulls as a spring does, whose stiffness the model has (step_shape). */
+static __attribute__((noinline)) rod_error step_contour_with_torque(rod *r, const rod_pose *base,
+                                                                    const rod_motion *now)
 {
     rod_joint torque_nm[ROD_MAX_LINKS];
-    const rod_error error = external_torques(r, torque_nm);
-    return error == ROD_OK ? step_contour(r, base, now, (const rod_joint *)torque_nm) : error;
+    memset(torque_nm, 0, sizeof torque_nm);
+    const rod_error error = r->force != NULL ? external_torques(r, torque_nm) : ROD_OK;
+    if (error != ROD_OK) {
+        return error;
+    }
+    for (int i = 0; i < r->params.links_n; i++) {
+        for (int axis = 0; axis < 2; axis++) {
+            torque_nm[i][axis] += r->shape.strength_nm * r->shape.angle_rad[i][axis];
+        }
+    }
+    return step_contour(r, base, now, (const rod_joint *)torque_nm);
 }
 
-static rod_error step_elastic(rod *r, const rod_pose *base, const vec3 *forces_newton)
+static rod_error step_elastic(rod *r, const rod_pose *base, const elastic_outside *outside)
 {
-    const elastic_outside outside = {
-        .forces_newton = forces_newton, .objects = r->objects, .contacts = &r->contacts};
     const bool found = elastic_step(&r->as.elastic.model, &r->as.elastic.state, &r->motion,
-                                    &r->base, base, &outside);
+                                    &r->base, base, outside);
     r->restored_n += found ? 0 : 1;
     return ROD_OK;
 }
 
-static __attribute__((noinline)) rod_error step_elastic_with_force(rod *r, const rod_pose *base)
+static __attribute__((noinline)) rod_error step_elastic_with_force(rod *r, const rod_pose *base,
+                                                                   elastic_outside *outside)
 {
-    vec3 forces_newton[ROD_MAX_LINKS + 1];
-    const rod_error error = external_forces(r, forces_newton);
-    return error == ROD_OK ? step_elastic(r, base, forces_newton) : error;
+    vec3 forces_newton[ROD_MAX_LINKS + 1], link[ROD_MAX_LINKS];
+    const rod_error error = r->force != NULL ? external_forces(r, forces_newton) : ROD_OK;
+    if (error != ROD_OK) {
+        return error;
+    }
+    outside->forces_newton = r->force != NULL ? forces_newton : NULL;
+    if (is_shaped(r)) {
+        shape_links(&r->shape, r->params.links_n, link);
+        outside->shape = link;
+        outside->shape_nm = r->shape.strength_nm;
+    }
+    return step_elastic(r, base, outside);
 }
 
 static float without_dust(float x)
@@ -316,13 +363,17 @@ rod_error rod_step(rod *r, const rod_pose *base)
         start(r, base);
         return ROD_OK;
     }
+    step_shape(r);
     const rod_motion now = kinematics_motion(&r->base, base);
+    const bool pulled = r->force != NULL || is_shaped(r);
     rod_error error;
     if (is_elastic(r)) {
-        error = r->force != NULL ? step_elastic_with_force(r, base) : step_elastic(r, base, NULL);
+        elastic_outside outside = {.objects = r->objects, .contacts = &r->contacts};
+        error =
+            pulled ? step_elastic_with_force(r, base, &outside) : step_elastic(r, base, &outside);
     } else {
-        error = r->force != NULL ? step_contour_with_force(r, base, &now)
-                                 : step_contour(r, base, &now, NULL);
+        error =
+            pulled ? step_contour_with_torque(r, base, &now) : step_contour(r, base, &now, NULL);
     }
     if (error == ROD_OK) {
         r->base = *base;

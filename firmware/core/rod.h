@@ -28,6 +28,7 @@
 #include "presets.h"
 #include "rod_params.h"
 #include "scene.h"
+#include "shape.h"
 #include "touch.h"
 
 /* An external energy, as world forces on the nodes: objects touched, wind, a shape to take. Reads
@@ -59,6 +60,7 @@ typedef struct {
     void *force_context;
     const scene *objects;
     touch_contacts contacts;
+    shape shape;
 } rod;
 
 /* Check, prepare, and lay the rod straight and at rest. *refusal (may be NULL) says what was wrong.
@@ -84,10 +86,11 @@ void rod_set_scene(rod *r, const scene *objects);
  * node with, N, in the world. Points into the rod; valid until the next call that takes a non-const rod. */
 const touch_contact *rod_contacts(const rod *r, int *contacts_n);
 
-/* A shape to take, as joint angles (links_n rows; the stops bound them): strength_nm pulls each joint (contour) or link
- * (elastic) towards it like a spring of so many N m. 0 N m or NULL lets the rod go. The change is blended in over blend_s,
- * smoothly; a shape given meanwhile starts from what is in force. Survives rod_reset, not a change of links_n.
- * Errors: ROD_E_SHAPE for an angle beyond +-pi, a strength beyond 0 ... 1e6 or a blend beyond 0 ... 60 s. */
+/* A shape to take, as joint angles (links_n rows; the stops bound what the rod makes of them): strength_nm pulls each joint
+ * (contour) or each link's direction in the base's axes (elastic) towards it like a spring of so many N m. 0 N m or NULL
+ * lets the rod go. The change is blended in evenly over blend_s; a shape given meanwhile starts from what is in
+ * force. Survives rod_reset and other parameters, but not another links_n or the paper's scheme.
+ * Errors: ROD_E_SHAPE beyond the bounds of shape.h, or with the paper's scheme (whose springs are explicit). */
 rod_error rod_set_shape(rod *r, const rod_joint *angle_rad, float strength_nm, float blend_s);
 
 /* One tick: the base is now here. The first step after rod_init or rod_reset only takes the pose.

@@ -211,7 +211,7 @@ static void base_motion(const double angle[2], quat turn, vec3 shift_m, rod_join
     const rod_motion motion = {turn, shift_m};
     contour model;
     int row_n;
-    TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, &row_n));
+    TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, 0.0f, &row_n));
     contour_base_motion(&model, x, &motion, delta);
 }
 

@@ -113,7 +113,7 @@ static void centred_damper_saws_beyond_its_bound_and_is_refused_there(void)
         contour_state from = {{{0.0f}}, {{1e-3f}}}, to;
         const rod_motion none = {{0.0f, 0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, 0.0f}};
         int row_n;
-        TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, &row_n));
+        TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, 0.0f, &row_n));
         TEST_ASSERT_EQUAL_INT(ROD_OK, contour_step(&model, &from, &to, &none, &none, NULL));
         TEST_ASSERT_EQUAL_INT(beyond, to.increment_rad[0][0] < 0.0f);
         TEST_ASSERT_EQUAL_INT(beyond ? ROD_E_OVERDAMPED : ROD_OK, rod_params_check(&params, NULL));

@@ -66,7 +66,7 @@ static inline void set_joint(int joint, int axis, double angle_rad, double incre
 static inline void prepare(double angle_max, double increment_max)
 {
     int row_n;
-    TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, &row_n));
+    TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, 0.0f, &row_n));
     ref_init(&ref, &params, params.scheme, ref_pose_of(ORIGIN));
     memset(&from, 0, sizeof from);
     memset(&to, 0, sizeof to);

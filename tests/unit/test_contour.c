@@ -262,10 +262,10 @@ static void matrix_that_float32_cannot_factor_is_refused_with_its_row(void)
         params.spring[i] = params.damper[i] = params.coupling[i] = 0.0f;
         params.smoothing[i] = 1e6f;
     }
-    TEST_ASSERT_EQUAL_INT(ROD_E_PIVOT, contour_prepare(&model, &params, &row_n));
+    TEST_ASSERT_EQUAL_INT(ROD_E_PIVOT, contour_prepare(&model, &params, 0.0f, &row_n));
     TEST_ASSERT_EQUAL_INT(3, row_n);
     params.smoothing[0] = params.smoothing[1] = 1e-3f;
-    TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, &row_n));
+    TEST_ASSERT_EQUAL_INT(ROD_OK, contour_prepare(&model, &params, 0.0f, &row_n));
 }
 
 static void step_that_is_not_finite_says_so(void)
