@@ -104,7 +104,10 @@ void contour_touch(const contour *model, const contour_state *from, contour_stat
                                .after_m = after_m,
                                .link = model->link};
     touch_points points;
-    touch_find(objects, NULL, &nodes, &points);
+    touch_find(objects, contacts, &nodes, &points);
+    for (int i = 0; i < points.points_n; i++) {
+        points.point[i].held = (vec3){0.0f, 0.0f, 0.0f};
+    }
     contacts->contacts_n = 0;
     if (points.points_n > 0 && displace(model, &points, link, displacement_m)) {
         touch_remember(&points, model->tick_squared_s2, contacts);

@@ -12,6 +12,9 @@
 
 #define THIRD (1.0f / 3.0f)
 
+/* How stiff a link is along itself where the rod touches, so many times what its node is in the matrix. */
+#define ELASTIC_LENGTH_HOLD 100.0f
+
 /* --- the matrix (elastic.c) ------------------------------------------------------------------------ */
 
 /* The matrix of a step: m + h gamma, and the joints (bending.h) with stiffness h^2 k + h c, kg m^2. tension (or NULL):
@@ -63,8 +66,8 @@ void elastic_touch_find(const elastic *model, const elastic_state *state, const 
 
 /* A state after its step, without the motion that ended at an object: BDF2 remembers how the nodes moved, and would have
  * them rebound. */
-void elastic_touch_settle(const elastic *model, const touch_points *points, vec3 base_step_m,
-                          elastic_state *state);
+void elastic_touch_settle(const elastic *model, const bending_bands *bands, touch_points *points,
+                          vec3 base_step_m, elastic_state *state);
 
 /* The direction of v, and its length; `otherwise` where it has none to speak of, or is nowhere. */
 static inline vec3 direction(vec3 v, vec3 otherwise, float *length)

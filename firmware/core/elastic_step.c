@@ -15,8 +15,6 @@ static const float LENGTH_ERROR_GOOD = 1e-6f;
 /* ... or after so many steps; what is then further off than this is reported. */
 static const float LENGTH_ERROR_MAX = 1e-5f;
 enum { LENGTH_STEPS_MAX = 3 };
-/* How stiff a link is along itself where the rod touches, so many times what its node is in the matrix. */
-static const float LENGTH_HOLD = 100.0f;
 
 static vec3 axis_of(const rod_pose *pose)
 {
@@ -63,25 +61,23 @@ static __attribute__((noinline)) void solve(const elastic *model, const elastic_
 }
 
 /* The same among contacts. False, with nothing changed, where float32 cannot. */
-static __attribute__((noinline)) bool solve_touching(const elastic *model,
-                                                     const elastic_state *state,
-                                                     const elastic_outside *outside,
-                                                     elastic_outcome *o, touch_points *points)
+static __attribute__((noinline)) bool
+solve_touching(const elastic *model, const elastic_state *state, const elastic_outside *outside,
+               elastic_outcome *o, touch_points *points, bending_bands *bands)
 {
     const int n = model->links_n;
-    bending_bands bands;
     step_stiffness s;
     vec3 displacement_m[ROD_MAX_LINKS];
     float tension[ROD_MAX_LINKS];
     memcpy(tension, o->tension, (size_t)n * sizeof *tension);
     stiffness_of(model, state, outside, o, &s);
-    bending_assemble(model->link, n, s.stiffness, s.lasting, &bands);
+    bending_assemble(model->link, n, s.stiffness, s.lasting, bands);
     const touch_system system = {.nodes_n = n,
-                                 .diagonal = bending_diagonal(&bands),
-                                 .off1 = bending_off1(&bands),
-                                 .off2 = bands.off2,
+                                 .diagonal = bending_diagonal(bands),
+                                 .off1 = bending_off1(bands),
+                                 .off2 = bands->off2,
                                  .link = model->link,
-                                 .hold = LENGTH_HOLD,
+                                 .hold = ELASTIC_LENGTH_HOLD,
                                  .force = o->node,
                                  .along = o->link};
     if (!touch_solve(&system, points, displacement_m, tension)) {
@@ -227,8 +223,9 @@ static __attribute__((noinline)) bool finish_touching(const elastic *model, elas
                                                       elastic_outcome *o)
 {
     touch_points points;
+    bending_bands bands;
     elastic_touch_find(model, state, o, from->position_m, to->position_m, outside, &points);
-    if (points.points_n == 0 || !solve_touching(model, state, outside, o, &points)) {
+    if (points.points_n == 0 || !solve_touching(model, state, outside, o, &points, &bands)) {
         outside->contacts->contacts_n = 0;
         return finish(model, state, base_turn_m, outside, o);
     }
@@ -238,8 +235,8 @@ static __attribute__((noinline)) bool finish_touching(const elastic *model, elas
         return false;
     }
     take_over(model, o, state);
-    elastic_touch_settle(model, &points, vec3_sub(to->position_m, from->position_m), state);
     touch_remember(&points, model->h_s * model->h_s, outside->contacts);
+    elastic_touch_settle(model, &bands, &points, vec3_sub(to->position_m, from->position_m), state);
     return true;
 }
 

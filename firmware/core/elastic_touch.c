@@ -1,4 +1,6 @@
 /* elastic_touch.c - see elastic_private.h: the elastic rod against objects; MODEL.md, "Touch". */
+#include <string.h>
+
 #include "elastic_private.h"
 
 /* From link to link, from a base on. */
@@ -28,37 +30,55 @@ void elastic_touch_find(const elastic *model, const elastic_state *state, const 
     touch_find(outside->objects, outside->contacts, &nodes, points);
 }
 
-/* What is left of a motion at a point: nothing where it sticks, what goes along the surface where it slides. */
-static vec3 left_of(vec3 motion, const touch_point *point)
+/* Without what BDF2 remembers of how the speeds came about: as if they had always been so. */
+static void forget(const elastic *model, vec3 base_step_m, elastic_state *state)
 {
     static const vec3 NONE = {0.0f, 0.0f, 0.0f};
-    if (point->state == TOUCH_STICKS) {
-        return NONE;
+    const float step_s = 1.5f * model->h_s;
+    vec3 before_m = base_step_m;
+    for (int i = 0; i < model->links_n; i++) {
+        const vec3 step_m = vec3_scale(state->speed_m_s[i], step_s);
+        state->link_step[i] = vec3_scale(vec3_sub(step_m, before_m), model->link[i].per_length);
+        state->speed_step[i] = NONE;
+        state->tension_step[i] = 0.0f;
+        before_m = step_m;
     }
-    return vec3_add_scaled(motion, point->normal, -vec3_dot(motion, point->normal));
 }
 
-void elastic_touch_settle(const elastic *model, const touch_points *points, vec3 base_step_m,
-                          elastic_state *state)
+static bool is_blow(const touch_points *points)
 {
-    vec3 step_m = base_step_m;              /* how far the node went */
-    vec3 taken_before = {0.0f, 0.0f, 0.0f}; /* what of that the node before lost */
-    int p = 0;
-    for (int i = 0; i < model->links_n; i++) {
-        const bending_link *row = &model->link[i];
-        step_m = vec3_add_scaled(step_m, state->link_step[i], row->length_m);
-        vec3 left = step_m;
-        for (; p < points->points_n && points->point[p].node == i; p++) {
-            const touch_point *point = &points->point[p];
-            if (point->state != TOUCH_OFF) {
-                left = left_of(left, point);
-                state->speed_m_s[i] = left_of(state->speed_m_s[i], point);
-                state->speed_step[i] = left_of(state->speed_step[i], point);
-            }
+    for (int i = 0; i < points->points_n; i++) {
+        if (points->point[i].state != TOUCH_OFF && !points->point[i].touched) {
+            return true;
         }
-        const vec3 taken = vec3_sub(step_m, left);
-        state->link_step[i] =
-            vec3_add_scaled(state->link_step[i], vec3_sub(taken_before, taken), row->per_length);
-        taken_before = taken;
     }
+    return false;
+}
+
+void elastic_touch_settle(const elastic *model, const bending_bands *bands, touch_points *points,
+                          vec3 base_step_m, elastic_state *state)
+{
+    if (!is_blow(points)) {
+        return;
+    }
+    const int n = model->links_n;
+    vec3 none[ROD_MAX_LINKS], moving_m[ROD_MAX_LINKS], change_m[ROD_MAX_LINKS];
+    memset(none, 0, sizeof none);
+    for (int i = 0; i < n; i++) {
+        moving_m[i] = vec3_scale(state->speed_m_s[i], model->h_s);
+    }
+    const touch_system system = {.nodes_n = n,
+                                 .diagonal = bending_diagonal(bands),
+                                 .off1 = bending_off1(bands),
+                                 .off2 = bands->off2,
+                                 .link = model->link,
+                                 .hold = ELASTIC_LENGTH_HOLD,
+                                 .force = none,
+                                 .along = state->link};
+    if (touch_blow(&system, points, moving_m, change_m)) {
+        for (int i = 0; i < n; i++) {
+            state->speed_m_s[i] = vec3_add_scaled(state->speed_m_s[i], change_m[i], model->per_h);
+        }
+    }
+    forget(model, base_step_m, state);
 }

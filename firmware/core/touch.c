@@ -1,27 +1,24 @@
 /* touch.c - see touch.h: which nodes may touch, and what is remembered of it. */
 #include "touch.h"
 
-#include <stddef.h>
-
 /* Two neighbours whose ways out are further apart than this cosine have the object between them. */
 static const float THROUGH_COSINE = -0.5f;
 /* Deep is further inside than this share of a link. */
 static const float DEEP_LINKS = 0.1f;
 
-/* The last step's force between a node and an object, N. Contacts are in the order of their nodes: *next is where to go
- * on looking. */
-static vec3 last_force(const touch_contacts *last, int *next, int node, int object)
+/* What the last step knows of a point. Contacts are in the order of their nodes: *next is where to go on looking. */
+static void recall(const touch_contacts *last, int *next, float h_squared_s2, touch_point *point)
 {
-    while (last != NULL && *next < last->contacts_n && (int)last->contact[*next].node <= node) {
+    const int node = (int)point->node + 1;
+    while (*next < last->contacts_n && (int)last->contact[*next].node < node) {
         ++*next;
     }
-    for (int i = *next;
-         last != NULL && i < last->contacts_n && (int)last->contact[i].node == node + 1; i++) {
-        if ((int)last->contact[i].object == object) {
-            return last->contact[i].force_newton;
+    for (int i = *next; i < last->contacts_n && (int)last->contact[i].node == node; i++) {
+        if (last->contact[i].object == point->object) {
+            point->touched = true;
+            point->held = vec3_scale(last->contact[i].force_newton, h_squared_s2);
         }
     }
-    return (vec3){0.0f, 0.0f, 0.0f};
 }
 
 /* The node at a gap from an object; gap_before_m: where the step began, as far as the gap's normal tells. */
@@ -92,8 +89,7 @@ void touch_find(const scene *objects, const touch_contacts *last, const touch_no
             }
         }
         for (int i = 0; i < mine_n; i++) {
-            mine[i].held =
-                vec3_scale(last_force(last, &next, node, mine[i].object), nodes->h_squared_s2);
+            recall(last, &next, nodes->h_squared_s2, &mine[i]);
         }
         points->points_n += mine_n;
     }

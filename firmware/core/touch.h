@@ -38,12 +38,13 @@ typedef enum { TOUCH_OFF, TOUCH_SLIDES, TOUCH_STICKS } touch_state;
 /* A node near enough to an object to touch it in this step. Forces are h^2 N, i.e. kg m. */
 typedef struct {
     vec3 normal;
-    float gap_m; /* that the prediction leaves it, less what it is let be inside for now */
-    float let_m; /* that: 0 or less */
-    float end_m; /* gap_m after the step */
-    vec3 slip_m; /* along the surface, in this step, as predicted */
-    vec3 held;   /* the force to begin with: the last step's */
-    vec3 force;  /* and as found */
+    float gap_m;  /* that the prediction leaves it, less what it is let be inside for now */
+    float let_m;  /* that: 0 or less */
+    float end_m;  /* gap_m after the step */
+    vec3 slip_m;  /* along the surface, in this step, as predicted */
+    bool touched; /* in the last step, and */
+    vec3 held;    /* with what force */
+    vec3 force;   /* and as found */
     float grip,
         rub; /* kg: force per metre by which a displacement misses, across the surface and along it */
     float friction;
@@ -70,7 +71,7 @@ typedef struct {
 } touch_nodes;
 
 /* The points that may touch: within a link's length of an object, at most two objects a node (the nearest). Contacts of the
- * last step (or NULL) give them their first force. Objects are touched by nodes alone, so a rod may get through one, and a
+ * last step give them their first force. Objects are touched by nodes alone, so a rod may get through one, and a
  * hand into one. That nothing is threaded for good, a node is let go where the one before it (node 0: the base) is deep inside
  * the object, or on another side of it: so a rod comes out from the base on. */
 void touch_find(const scene *objects, const touch_contacts *last, const touch_nodes *nodes,
@@ -93,6 +94,11 @@ typedef struct {
  * positive definite; nothing is then to be used. One to TOUCH_PASSES_MAX passes of about 420 instructions a node. */
 bool touch_solve(const touch_system *system, touch_points *points, vec3 *displacement_m,
                  float *tension);
+
+/* The change of a motion by which nothing moves into what it touches: as touch_solve, with moving_m (h times the nodes'
+ * speeds) for what the step would do, in one pass with the states it has found. Points are spoilt. */
+bool touch_blow(const touch_system *system, touch_points *points, const vec3 *moving_m,
+                vec3 *change_m);
 
 /* What touches after the step. */
 void touch_remember(const touch_points *points, float h_squared_s2, touch_contacts *contacts);

@@ -97,11 +97,30 @@ static touch_call call_of(const touch_point *point, vec3 displacement_m)
     };
 }
 
+/* Is a neighbour further in the same object? Where several nodes have come into one, the deepest pushed out takes the
+ * others with it; all pushed at once, some would have to be pulled. */
+static bool is_beside_deeper(const touch_points *points, int i)
+{
+    const touch_point *p = points->point, *own = &points->point[i];
+    for (int k = i - 1; k >= 0 && p[k].node + 1 >= own->node; k--) {
+        if (p[k].object == own->object && p[k].end_m <= own->end_m) {
+            return true;
+        }
+    }
+    for (int k = i + 1; k < points->points_n && p[k].node <= own->node + 1; k++) {
+        if (p[k].object == own->object && p[k].end_m < own->end_m) {
+            return true;
+        }
+    }
+    return false;
+}
+
 /* The state for the next solution: no object may pull, and along the surface it may use what lies within the cone. How hard
  * it presses is sure only where the last solution was with it; otherwise no harder than in the last step. Returns
  * whether the state is another than it was. */
-static bool decide(touch_point *point, vec3 displacement_m)
+static bool decide(touch_points *points, int i, vec3 displacement_m)
 {
+    touch_point *point = &points->point[i];
     const touch_call call = call_of(point, displacement_m);
     const float held = vec3_dot(point->normal, point->held);
     const float sure = point->state == TOUCH_OFF && held < call.press ? held : call.press;
@@ -109,7 +128,8 @@ static bool decide(touch_point *point, vec3 displacement_m)
     const float along_squared = vec3_dot(call.along, call.along);
     uint8_t state = TOUCH_OFF;
     float share = 0.0f;
-    if (call.press > 0.0f) {
+    if (call.press > 0.0f &&
+        (point->state != TOUCH_OFF || held > 0.0f || !is_beside_deeper(points, i))) {
         const bool sticks = along_squared <= most * most && most > 0.0f;
         state = sticks ? TOUCH_STICKS : TOUCH_SLIDES;
         share = sticks ? 1.0f : most > 0.0f ? most / trig_sqrt(along_squared) : 0.0f;
@@ -117,6 +137,20 @@ static bool decide(touch_point *point, vec3 displacement_m)
     const bool changed = state != point->state || trig_abs(share - point->share) > SHARE_CHANGE;
     point->state = state;
     point->share = share;
+    return changed;
+}
+
+/* All of them. */
+static bool decide_all(touch_points *points, const vec3 *displacement_m)
+{
+    bool changed = false;
+    for (int i = 0; i < points->points_n; i++) {
+        touch_point *point = &points->point[i];
+        point->end_m = point->gap_m + vec3_dot(point->normal, displacement_m[point->node]);
+    }
+    for (int i = 0; i < points->points_n; i++) {
+        changed = decide(points, i, displacement_m[points->point[i].node]) || changed;
+    }
     return changed;
 }
 
@@ -281,7 +315,14 @@ bool touch_solve(const touch_system *system, touch_points *points, vec3 *displac
         touch_point *point = &points->point[i];
         point->grip = GRIP * system->diagonal[point->node];
         point->rub = RUB * system->diagonal[point->node];
-        (void)decide(point, NONE);
+        point->state = point->touched ? TOUCH_SLIDES : TOUCH_OFF;
+    }
+    (void)decide_all(points, displacement_m);
+    for (int i = 0; i < points->points_n; i++) {
+        touch_point *point = &points->point[i];
+        if (point->touched && point->state == TOUCH_OFF) {
+            point->state = TOUCH_SLIDES;
+        }
     }
     bool again = true;
     for (int pass = 1; again; pass++) {
@@ -291,11 +332,7 @@ bool touch_solve(const touch_system *system, touch_points *points, vec3 *displac
             return false;
         }
         memcpy(displacement_m, b, (size_t)n * sizeof *b);
-        again = false;
-        for (int i = 0; i < points->points_n && pass < TOUCH_PASSES_MAX; i++) {
-            touch_point *point = &points->point[i];
-            again = decide(point, displacement_m[point->node]) || again;
-        }
+        again = pass < TOUCH_PASSES_MAX && decide_all(points, displacement_m);
     }
     for (int i = 0; i < points->points_n; i++) {
         touch_point *point = &points->point[i];
@@ -308,4 +345,27 @@ bool touch_solve(const touch_system *system, touch_points *points, vec3 *displac
         before = displacement_m[i];
     }
     return true;
+}
+
+bool touch_blow(const touch_system *system, touch_points *points, const vec3 *moving_m,
+                vec3 *change_m)
+{
+    static const vec3 NONE = {0.0f, 0.0f, 0.0f};
+    const int n = system->nodes_n;
+    touch_links links;
+    for (int i = 0; i < n; i++) {
+        links.hold[i] = system->hold * system->diagonal[i];
+        change_m[i] = NONE;
+    }
+    for (int i = 0; i < points->points_n; i++) {
+        touch_point *point = &points->point[i];
+        const vec3 moving = moving_m[point->node];
+        point->held = NONE;
+        point->gap_m = vec3_dot(point->normal, moving);
+        point->slip_m = vec3_add_scaled(moving, point->normal, -point->gap_m);
+    }
+    vec3 b[ROD_MAX_LINKS];
+    take_links(system, change_m, &links, b);
+    memcpy(change_m, b, (size_t)n * sizeof *b);
+    return solve_blocks(system, points, &links, change_m);
 }

@@ -12,6 +12,7 @@ static rod subject;
 static rod_params params;
 static float b2[ROD_MAX_LINKS][2], b3[ROD_MAX_LINKS][3];
 static vec3 nodes[ROD_MAX_LINKS + 1];
+static scene crowd;
 
 static rod_pose hand_at(int tick)
 {
@@ -35,15 +36,59 @@ static void no_force(const vec3 *nodes_m, int nodes_n, vec3 *forces_newton, void
     (void)nodes_m, (void)nodes_n, (void)forces_newton, (void)context;
 }
 
-typedef enum { STEP, STEP_WITH_FORCE, SOLVE2, SOLVE3, NODES, SET_PARAMS, PARTS_N } part;
-static const char *const PART_NAMES[PARTS_N] = {"step",   "step_with_force", "solve2",
-                                                "solve3", "nodes",           "set_params"};
+/* Eight boxes, four on either side of the rod as it stands: each of its nodes is near all of them, and what cannot be
+ * held in the first pass is not held in the second. */
+static void make_crowd(void)
+{
+    for (int i = 0; i < SCENE_OBJECTS_MAX; i++) {
+        const float side = (i & 1) != 0 ? 1.0f : -1.0f;
+        const scene_object wall = {.kind = SCENE_BOX,
+                                   .place_m = {side * 0.26f, 0.0f, 0.3f + 0.001f * (float)i},
+                                   .orientation = {0.0f, 0.0f, 0.0f, 1.0f},
+                                   .half_m = {0.2f, 1.0f, 1.0f},
+                                   .radius_m = 0.055f,
+                                   .friction = 0.5f};
+        (void)scene_put(&crowd, i, &wall, NULL);
+    }
+}
+
+/* Drawn to a shape that is still on its way. */
+static void draw(void)
+{
+    rod_joint bent[ROD_MAX_LINKS];
+    for (int i = 0; i < ROD_MAX_LINKS; i++) {
+        bent[i][ROD_THETA] = bent[i][ROD_PHI] = 0.02f;
+    }
+    (void)rod_set_shape(&subject, (const rod_joint *)bent, 1.0f, 1.0f);
+}
+
+typedef enum {
+    STEP,
+    STEP_WITH_FORCE,
+    STEP_AMONG_OBJECTS,
+    STEP_TO_SHAPE,
+    SOLVE2,
+    SOLVE3,
+    NODES,
+    SET_PARAMS,
+    PARTS_N
+} part;
+static const char *const PART_NAMES[PARTS_N] = {
+    "step",   "step_with_force", "step_among_objects", "step_to_shape", "solve2",
+    "solve3", "nodes",           "set_params"};
+
+static bool is_step(part which)
+{
+    return which <= STEP_TO_SHAPE;
+}
 
 static void do_part(part which, const rod_pose *base)
 {
     switch (which) {
     case STEP:
     case STEP_WITH_FORCE:
+    case STEP_AMONG_OBJECTS:
+    case STEP_TO_SHAPE:
         rod_step(&subject, base);
         break;
     case SOLVE2:
@@ -91,6 +136,10 @@ static void count(const char *name, part which, rod_pose (*hand_at)(int tick))
 {
     rod_init(&subject, &params, NULL);
     rod_set_force(&subject, which == STEP_WITH_FORCE ? no_force : NULL, NULL);
+    rod_set_scene(&subject, which == STEP_AMONG_OBJECTS ? &crowd : NULL);
+    if (which == STEP_TO_SHAPE) {
+        draw();
+    }
     for (int tick = 0; tick < 102; tick++) {
         const rod_pose base = hand_at(tick);
         if (tick < 2) {
@@ -100,7 +149,7 @@ static void count(const char *name, part which, rod_pose (*hand_at)(int tick))
         cost_begin();
         do_part(which, &base);
         cost_end();
-        if (which != STEP && which != STEP_WITH_FORCE) {
+        if (!is_step(which)) {
             rod_step(&subject, &base);
         }
     }
@@ -117,6 +166,7 @@ static void count_contour(int links_n)
     count("step_no_smoothing", STEP, hand_at);
     contour_rod(links_n, 50.0f, 2);
     count("step_hold_2", STEP, hand_at);
+    count("step_hostile_among", STEP_AMONG_OBJECTS, hostile_at);
 }
 
 static void count_elastic(int links_n)
@@ -125,16 +175,21 @@ static void count_elastic(int links_n)
     count("elastic_step", STEP, hand_at);
     count("elastic_hostile", STEP, hostile_at);
     count("elastic_with_force", STEP_WITH_FORCE, hand_at);
+    count("elastic_among", STEP_AMONG_OBJECTS, hand_at);
+    count("elastic_hostile_among", STEP_AMONG_OBJECTS, hostile_at);
+    count("elastic_to_shape", STEP_TO_SHAPE, hand_at);
     count("elastic_nodes", NODES, hand_at);
     count("elastic_set_params", SET_PARAMS, hand_at);
     params.tick_s = 4e-3f; /* in several steps */
     count("elastic_hostile_4ms", STEP, hostile_at);
+    count("elastic_hostile_among_4ms", STEP_AMONG_OBJECTS, hostile_at);
 }
 
 int main(void)
 {
     static const int LINKS_N[] = {4, 10, 20, 50};
     cost_start();
+    make_crowd();
     for (int i = 0; i < 4; i++) {
         count_contour(LINKS_N[i]);
         count_elastic(LINKS_N[i]);

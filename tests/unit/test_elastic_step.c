@@ -201,7 +201,8 @@ static bool one_step(bool pushed, bool folded)
     }
     tell_reference();
     const rod_motion any = {from.orientation, from.position_m}; /* the tick is one step */
-    const bool found = elastic_step(&model, &state, &any, &from, &to, pushed ? force : NULL);
+    const elastic_outside outside = {.forces_newton = pushed ? force : NULL};
+    const bool found = elastic_step(&model, &state, &any, &from, &to, &outside);
     ref_elastic_step(&ref, ref_pose_of(to), pushed ? force : NULL);
     expect_unit_links();
     if (is_open()) {
