@@ -106,7 +106,7 @@ void contour_touch(const contour *model, const contour_state *from, contour_stat
     touch_points points;
     touch_find(objects, contacts, &nodes, &points);
     for (int i = 0; i < points.points_n; i++) {
-        points.point[i].held = (vec3){0.0f, 0.0f, 0.0f};
+        points.point[i].force = (vec3){0.0f, 0.0f, 0.0f};
     }
     contacts->contacts_n = 0;
     if (points.points_n > 0 && displace(model, &points, link, displacement_m)) {

@@ -12,9 +12,6 @@
 
 #define THIRD (1.0f / 3.0f)
 
-/* How stiff a link is along itself where the rod touches, so many times what its node is in the matrix. */
-#define ELASTIC_LENGTH_HOLD 100.0f
-
 /* --- the matrix (elastic.c) ------------------------------------------------------------------------ */
 
 /* The matrix of a step: m + h gamma, and the joints (bending.h) with stiffness h^2 k + h c, kg m^2. tension (or NULL):
@@ -64,8 +61,14 @@ void elastic_touch_find(const elastic *model, const elastic_state *state, const 
                         vec3 from_m, vec3 to_m, const elastic_outside *outside,
                         touch_points *points);
 
-/* A state after its step, without the motion that ended at an object: BDF2 remembers how the nodes moved, and would have
- * them rebound. */
+/* Forces to displacements among contacts; tensions gain what the links now pull. False, with the outcome as it was, where
+ * float32 cannot. */
+bool elastic_touch_solve(const elastic *model, const bending_bands *bands, touch_points *points,
+                         elastic_outcome *o);
+
+/* After a step. A blow, a node that has come to touch, ends the motion into what it hits all along the rod, and BDF2 starts
+ * anew: it remembers how the nodes moved and how their speeds changed, and would have them rebound, in a stiff
+ * rod with more than they came with. Points are spoilt. */
 void elastic_touch_settle(const elastic *model, const bending_bands *bands, touch_points *points,
                           vec3 base_step_m, elastic_state *state);
 

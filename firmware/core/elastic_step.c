@@ -60,34 +60,6 @@ static __attribute__((noinline)) void solve(const elastic *model, const elastic_
     penta_solve3(&system, (float(*)[3])(void *)o->node); /* a vec3 is three floats */
 }
 
-/* The same among contacts. False, with nothing changed, where float32 cannot. */
-static __attribute__((noinline)) bool
-solve_touching(const elastic *model, const elastic_state *state, const elastic_outside *outside,
-               elastic_outcome *o, touch_points *points, bending_bands *bands)
-{
-    const int n = model->links_n;
-    step_stiffness s;
-    vec3 displacement_m[ROD_MAX_LINKS];
-    float tension[ROD_MAX_LINKS];
-    memcpy(tension, o->tension, (size_t)n * sizeof *tension);
-    stiffness_of(model, state, outside, o, &s);
-    bending_assemble(model->link, n, s.stiffness, s.lasting, bands);
-    const touch_system system = {.nodes_n = n,
-                                 .diagonal = bending_diagonal(bands),
-                                 .off1 = bending_off1(bands),
-                                 .off2 = bands->off2,
-                                 .link = model->link,
-                                 .hold = ELASTIC_LENGTH_HOLD,
-                                 .force = o->node,
-                                 .along = o->link};
-    if (!touch_solve(&system, points, displacement_m, tension)) {
-        return false;
-    }
-    memcpy(o->node, displacement_m, (size_t)n * sizeof *displacement_m);
-    memcpy(o->tension, tension, (size_t)n * sizeof *tension);
-    return true;
-}
-
 /* The links as the nodes now stand: their directions, and what each has too much in length, m. Returns
  * the worst relative error. */
 static float measure(const elastic *model, elastic_outcome *o, float *excess_m)
@@ -224,13 +196,18 @@ static __attribute__((noinline)) bool finish_touching(const elastic *model, elas
 {
     touch_points points;
     bending_bands bands;
+    step_stiffness s;
     elastic_touch_find(model, state, o, from->position_m, to->position_m, outside, &points);
-    if (points.points_n == 0 || !solve_touching(model, state, outside, o, &points, &bands)) {
-        outside->contacts->contacts_n = 0;
+    outside->contacts->contacts_n = 0;
+    if (points.points_n == 0) {
+        return finish(model, state, base_turn_m, outside, o);
+    }
+    stiffness_of(model, state, outside, o, &s);
+    bending_assemble(model->link, model->links_n, s.stiffness, s.lasting, &bands);
+    if (!elastic_touch_solve(model, &bands, &points, o)) { /* float32 cannot */
         return finish(model, state, base_turn_m, outside, o);
     }
     if (!find_lengths(model, o)) {
-        outside->contacts->contacts_n = 0;
         restore(model, o, base_turn_m, state);
         return false;
     }

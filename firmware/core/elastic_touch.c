@@ -30,6 +30,39 @@ void elastic_touch_find(const elastic *model, const elastic_state *state, const 
     touch_find(outside->objects, outside->contacts, &nodes, points);
 }
 
+/* How stiff a link is along itself, so many times what its node is in the matrix: what sticks and a rod that is too long
+ * would fight if lengths came after contacts alone. */
+static const float LENGTH_HOLD = 100.0f;
+
+static touch_system system_of(const elastic *model, const bending_bands *bands, const vec3 *force,
+                              const vec3 *along)
+{
+    return (touch_system){.nodes_n = model->links_n,
+                          .diagonal = bending_diagonal(bands),
+                          .off1 = bending_off1(bands),
+                          .off2 = bands->off2,
+                          .link = model->link,
+                          .hold = LENGTH_HOLD,
+                          .force = force,
+                          .along = along};
+}
+
+bool elastic_touch_solve(const elastic *model, const bending_bands *bands, touch_points *points,
+                         elastic_outcome *o)
+{
+    vec3 displacement_m[ROD_MAX_LINKS];
+    float tension[ROD_MAX_LINKS];
+    const size_t n = (size_t)model->links_n;
+    memcpy(tension, o->tension, n * sizeof *tension);
+    const touch_system system = system_of(model, bands, o->node, o->link);
+    const bool solved = touch_solve(&system, points, displacement_m, tension);
+    if (solved) {
+        memcpy(o->node, displacement_m, n * sizeof *displacement_m);
+        memcpy(o->tension, tension, n * sizeof *tension);
+    }
+    return solved;
+}
+
 /* Without what BDF2 remembers of how the speeds came about: as if they had always been so. */
 static void forget(const elastic *model, vec3 base_step_m, elastic_state *state)
 {
@@ -61,22 +94,15 @@ void elastic_touch_settle(const elastic *model, const bending_bands *bands, touc
     if (!is_blow(points)) {
         return;
     }
-    const int n = model->links_n;
     vec3 none[ROD_MAX_LINKS], moving_m[ROD_MAX_LINKS], change_m[ROD_MAX_LINKS];
     memset(none, 0, sizeof none);
-    for (int i = 0; i < n; i++) {
+    memset(moving_m, 0, sizeof moving_m);
+    for (int i = 0; i < model->links_n; i++) {
         moving_m[i] = vec3_scale(state->speed_m_s[i], model->h_s);
     }
-    const touch_system system = {.nodes_n = n,
-                                 .diagonal = bending_diagonal(bands),
-                                 .off1 = bending_off1(bands),
-                                 .off2 = bands->off2,
-                                 .link = model->link,
-                                 .hold = ELASTIC_LENGTH_HOLD,
-                                 .force = none,
-                                 .along = state->link};
+    const touch_system system = system_of(model, bands, none, state->link);
     if (touch_blow(&system, points, moving_m, change_m)) {
-        for (int i = 0; i < n; i++) {
+        for (int i = 0; i < model->links_n; i++) {
             state->speed_m_s[i] = vec3_add_scaled(state->speed_m_s[i], change_m[i], model->per_h);
         }
     }

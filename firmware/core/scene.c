@@ -97,44 +97,72 @@ int scene_objects_n(const scene *s)
 
 /* --- how far -------------------------------------------------------------------------------------- */
 
+/* So near to the box within an object (m^2) a way out of it is not known in float32; the nearest face's serves. */
+static const float WITHIN_M2 = 1e-12f;
+
 static float beyond(float place, float half)
 {
     return place > half ? place - half : place < -half ? place + half : 0.0f;
 }
 
-static float signed_one(float x)
+static float positive(float x)
 {
-    return x < 0.0f ? -1.0f : 1.0f;
+    return x > 0.0f ? x : 0.0f;
 }
 
-/* Inside the box that the rounding goes round: the nearest face is the way out. */
-static scene_gap gap_from_within(const scene_object *o, const frame3 *axes, vec3 p)
+/* From the faces of the box within, seen from inside: the nearest. */
+static float depth(float x, float y, float z)
 {
-    const float x = trig_abs(p.x) - o->half_m.x, y = trig_abs(p.y) - o->half_m.y,
-                z = trig_abs(p.z) - o->half_m.z;
-    if (z >= x && z >= y) {
-        return (scene_gap){z - o->radius_m, vec3_scale(axes->z, signed_one(p.z))};
-    }
-    if (y >= x) {
-        return (scene_gap){y - o->radius_m, vec3_scale(axes->y, signed_one(p.y))};
-    }
-    return (scene_gap){x - o->radius_m, vec3_scale(axes->x, signed_one(p.x))};
+    const float nearer = x > y ? x : y;
+    return nearer > z ? nearer : z;
+}
+
+static vec3 along(vec3 axis, float place)
+{
+    return vec3_scale(axis, place < 0.0f ? -1.0f : 1.0f);
 }
 
 scene_gap scene_gap_to(const scene_body *body, vec3 point_m)
 {
     const scene_object *o = &body->object;
+    const frame3 *axes = &body->axes;
     const vec3 offset = vec3_sub(point_m, o->place_m);
     if (o->kind == SCENE_PLANE) {
-        return (scene_gap){vec3_dot(body->axes.z, offset), body->axes.z};
+        return (scene_gap){vec3_dot(axes->z, offset), axes->z};
     }
-    const vec3 p = frame3_from_parent(&body->axes, offset);
+    const vec3 p = frame3_from_parent(axes, offset);
     const vec3 out = {beyond(p.x, o->half_m.x), beyond(p.y, o->half_m.y), beyond(p.z, o->half_m.z)};
     const float squared = vec3_dot(out, out);
-    if (squared < 1e-12f) { /* a direction that short is not known */
-        return gap_from_within(o, &body->axes, p);
+    if (squared >= WITHIN_M2) {
+        const float distance = trig_sqrt(squared);
+        return (scene_gap){distance - o->radius_m,
+                           frame3_to_parent(axes, vec3_scale(out, 1.0f / distance))};
     }
-    const float distance = trig_sqrt(squared);
-    return (scene_gap){distance - o->radius_m,
-                       frame3_to_parent(&body->axes, vec3_scale(out, 1.0f / distance))};
+    const float x = trig_abs(p.x) - o->half_m.x, y = trig_abs(p.y) - o->half_m.y,
+                z = trig_abs(p.z) - o->half_m.z;
+    const float nearest = depth(x, y, z);
+    return (scene_gap){nearest - o->radius_m, nearest <= z   ? along(axes->z, p.z)
+                                              : nearest <= y ? along(axes->y, p.y)
+                                                             : along(axes->x, p.x)};
+}
+
+void scene_gaps_m(const scene_body *body, const vec3 *points_m, int points_n, float *gaps_m)
+{
+    const frame3 axes = body->axes; /* copies: gaps_m might be anything to the compiler */
+    const vec3 place = body->object.place_m, half = body->object.half_m;
+    const float radius = body->object.radius_m;
+    if (body->object.kind == SCENE_PLANE) {
+        for (int i = 0; i < points_n; i++) {
+            gaps_m[i] = vec3_dot(axes.z, vec3_sub(points_m[i], place));
+        }
+        return;
+    }
+    for (int i = 0; i < points_n; i++) {
+        const vec3 p = frame3_from_parent(&axes, vec3_sub(points_m[i], place));
+        const float x = trig_abs(p.x) - half.x, y = trig_abs(p.y) - half.y,
+                    z = trig_abs(p.z) - half.z;
+        const vec3 out = {positive(x), positive(y), positive(z)};
+        const float squared = vec3_dot(out, out);
+        gaps_m[i] = (squared >= WITHIN_M2 ? trig_sqrt(squared) : depth(x, y, z)) - radius;
+    }
 }

@@ -79,7 +79,10 @@ rod_error scene_put(scene *s, int index, const scene_object *object, scene_refus
 /* Objects in it. */
 int scene_objects_n(const scene *s);
 
-/* From a point to a body that is not NONE. */
+/* From a point to a body that is not NONE. About 110 instructions. */
 scene_gap scene_gap_to(const scene_body *body, vec3 point_m);
+
+/* From many points, only how far: about 50 instructions each. */
+void scene_gaps_m(const scene_body *body, const vec3 *points_m, int points_n, float *gaps_m);
 
 #endif

@@ -4,7 +4,7 @@
  *
  * A contact is a node that an object keeps out. Its force is an unknown of the same linear system as the displacements,
  * held within Coulomb's cone, and handed from step to step as the next one's first guess: so at rest it is exact,
- * and a node that sticks does not creep. Work is bounded: at most two objects a node, at most TOUCH_PASSES_MAX
+ * and a node that sticks does not creep. Work is bounded: at most two objects a node, one where there would be more than TOUCH_CONTACTS_MAX in all; at most TOUCH_PASSES_MAX
  * factorisations a step. Caller-owned memory, no failure: what comes out is finite where what goes in is.
  */
 #ifndef LIMBER_TOUCH_H
@@ -13,7 +13,7 @@
 #include "bending.h"
 #include "scene.h"
 
-enum { TOUCH_CONTACTS_MAX = 2 * ROD_MAX_LINKS, TOUCH_PASSES_MAX = 3 };
+enum { TOUCH_CONTACTS_MAX = ROD_MAX_LINKS + 16, TOUCH_PASSES_MAX = 3 };
 
 /* A node that finds itself inside an object comes out this fast, m/s: at once would be a kick. */
 #define TOUCH_ESCAPE_M_S 0.5f
@@ -38,13 +38,13 @@ typedef enum { TOUCH_OFF, TOUCH_SLIDES, TOUCH_STICKS } touch_state;
 /* A node near enough to an object to touch it in this step. Forces are h^2 N, i.e. kg m. */
 typedef struct {
     vec3 normal;
-    float gap_m;  /* that the prediction leaves it, less what it is let be inside for now */
-    float let_m;  /* that: 0 or less */
-    float end_m;  /* gap_m after the step */
-    vec3 slip_m;  /* along the surface, in this step, as predicted */
-    bool touched; /* in the last step, and */
-    vec3 held;    /* with what force */
-    vec3 force;   /* and as found */
+    float gap_m;   /* that the prediction leaves it, less what it is let be inside for now */
+    float let_m;   /* that: 0 or less */
+    float end_m;   /* gap_m after the step */
+    vec3 slip_m;   /* along the surface, in this step, as predicted */
+    bool touched;  /* in the last step, */
+    float pressed; /* as hard as that, */
+    vec3 force;    /* with that force to begin with; touch_solve makes it this step's */
     float grip,
         rub; /* kg: force per metre by which a displacement misses, across the surface and along it */
     float friction;

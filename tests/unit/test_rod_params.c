@@ -180,7 +180,7 @@ static void test_overdamped_by_drag_alone(void)
 
 static void test_every_error_has_its_own_text(void)
 {
-    for (int a = 0; a >= ROD_E_GRAVITY; a--) {
+    for (int a = 0; a >= ROD_E_SHAPE; a--) {
         const char *text = rod_error_text((rod_error)a);
         TEST_ASSERT_NOT_NULL(text);
         TEST_ASSERT_TRUE(text[0] != '\0');
@@ -189,7 +189,7 @@ static void test_every_error_has_its_own_text(void)
             TEST_ASSERT_TRUE_MESSAGE(strcmp(text, rod_error_text((rod_error)b)) != 0, text);
         }
     }
-    TEST_ASSERT_EQUAL_STRING("unknown error", rod_error_text((rod_error)(ROD_E_GRAVITY - 1)));
+    TEST_ASSERT_EQUAL_STRING("unknown error", rod_error_text((rod_error)(ROD_E_SHAPE - 1)));
     TEST_ASSERT_EQUAL_STRING("unknown error", rod_error_text((rod_error)1));
 }
 
