@@ -1,26 +1,17 @@
 /* params_text.c - see params_text.h. */
 #include "params_text.h"
 
-#include <ctype.h>
-#include <errno.h>
-#include <ini.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "ini_lines.h"
 #include "params.h"
+#include "params_material.h"
 #include "sim.h"
 
-bool params_text_is_settable(const rod_field *field)
-{
-    return strcmp(field->name, "tick") != 0; /* the tick is the rate's */
-}
-
-static int index_of(const rod_field *field)
-{
-    return (int)(field - rod_fields);
-}
+enum { LINKS_OF_MATERIAL = 10 };
 
 int params_text_preset(params_text *text, const char *name)
 {
@@ -37,69 +28,71 @@ int params_text_preset(params_text *text, const char *name)
 
 static int unknown_key(const char *origin, const char *key)
 {
-    char names[200] = "";
-    for (int i = 0; i < ROD_FIELDS_N; i++) {
-        if (params_text_is_settable(&rod_fields[i])) {
-            strcat(strcat(names, *names == '\0' ? "" : ", "), rod_fields[i].name);
+    char names[400] = "";
+    for (int i = 0; i < PARAMS_KEYS_N; i++) {
+        if (params_key_is_settable(i)) {
+            strcat(strcat(names, *names == '\0' ? "" : ", "), params_key_at(i).name);
         }
     }
     return sim_complain("%s: unknown key '%.40s'; there are %s%s", origin, key, names,
                         strcmp(key, "tick") == 0 ? " (the tick is set by --rate)" : "");
 }
 
-static int bad_choice(const rod_field *field, const char *origin, const char *word)
+/* "a, b or c" */
+static int bad_choice(const params_key *key, const char *origin, const char *word)
 {
-    char names[100] = "";
-    for (int i = 0; i <= (int)field->max; i++) {
-        strcat(strcat(names, i == 0 ? "" : " or "), field->choices[i]);
+    char names[200] = "";
+    const int last = (int)key->max;
+    for (int i = 0; i <= last; i++) {
+        strcat(strcat(names, i == 0 ? "" : i == last ? " or " : ", "), key->choices[i]);
     }
-    return sim_complain("%s: %s = %.40s: must be %s", origin, field->name, word, names);
+    return sim_complain("%s: %s = %.40s: must be %s", origin, key->name, word, names);
 }
 
-static int read_value(const rod_field *field, const char *origin, const char *word, float *value)
+static int read_value(const params_key *key, const char *origin, const char *word, float *value)
 {
-    if (field->kind == ROD_FIELD_CHOICE) {
-        for (int i = 0; i <= (int)field->max; i++) {
-            if (strcmp(word, field->choices[i]) == 0) {
+    if (key->choices != NULL) {
+        for (int i = 0; i <= (int)key->max; i++) {
+            if (strcmp(word, key->choices[i]) == 0) {
                 *value = (float)i;
                 return SIM_OK;
             }
         }
-        return bad_choice(field, origin, word);
+        return bad_choice(key, origin, word);
     }
     char *end;
     const double number = strtod(word, &end);
     if (end == word || *end != '\0') {
-        return sim_complain("%s: %s = %.40s: not a number", origin, field->name, word);
+        return sim_complain("%s: %s = %.40s: not a number", origin, key->name, word);
     }
     *value = (float)number;
     /* the bounds are floats; a number that rounds to one is meant to be it */
-    if (!(*value >= field->min && *value <= field->max)) {
+    if (!(*value >= key->min && *value <= key->max)) {
         return sim_complain("%s: %s = %.40s: out of bounds, must be %g ... %g%s%s", origin,
-                            field->name, word, (double)field->min, (double)field->max,
-                            *field->unit == '\0' ? "" : " ", field->unit);
+                            key->name, word, (double)key->min, (double)key->max,
+                            *key->unit == '\0' ? "" : " ", key->unit);
     }
-    if (field->kind == ROD_FIELD_COUNT_OF && fabs(number - round(number)) > 0.0) {
-        return sim_complain("%s: %s = %.40s: must be a whole number", origin, field->name, word);
+    if (key->whole && fabs(number - round(number)) > 0.0) {
+        return sim_complain("%s: %s = %.40s: must be a whole number", origin, key->name, word);
     }
     return SIM_OK;
 }
 
 /* Takes a text of one or more values, separated by commas or blanks; appends where `more` says that
  * the line continues the one before. */
-static int take(params_text *text, const char *origin, const char *key, const char *value,
+static int take(params_text *text, const char *origin, const char *name, const char *value,
                 bool more)
 {
-    const rod_field *field = rod_field_find(key);
-    if (field == NULL || !params_text_is_settable(field)) {
-        return unknown_key(origin, key);
+    const int index = params_key_find(name);
+    if (index < 0) {
+        return unknown_key(origin, name);
     }
-    params_entry *entry = &text->entries[index_of(field)];
+    const params_key key = params_key_at(index);
+    params_entry *entry = &text->entries[index];
     if (!more) {
         entry->values_n = 0;
         snprintf(entry->origin, sizeof entry->origin, "%s", origin);
     }
-    const int most_n = field->kind == ROD_FIELD_PER_JOINT ? ROD_MAX_LINKS : 1;
     char *copy = strdup(value);
     char *rest = copy;
     int result = SIM_OK;
@@ -107,18 +100,23 @@ static int take(params_text *text, const char *origin, const char *key, const ch
         if (*word == '\0') {
             continue;
         }
-        if (entry->values_n == most_n) {
-            result = sim_complain("%s: %s takes at most %d value%s", origin, key, most_n,
-                                  most_n == 1 ? "" : "s");
+        if (entry->values_n == key.values_max) {
+            result = sim_complain("%s: %s takes at most %d value%s", origin, name, key.values_max,
+                                  key.values_max == 1 ? "" : "s");
         } else {
-            result = read_value(field, origin, word, &entry->values[entry->values_n++]);
+            result = read_value(&key, origin, word, &entry->values[entry->values_n++]);
         }
     }
     free(copy);
     if (result == SIM_OK && entry->values_n == 0) {
-        result = sim_complain("%s: %s has no value", origin, key);
+        result = sim_complain("%s: %s has no value", origin, name);
     }
     return result;
+}
+
+int params_text_key(params_text *text, const char *origin, const char *key, const char *value)
+{
+    return take(text, origin, key, value, false);
 }
 
 int params_text_model(params_text *text, const char *name)
@@ -137,108 +135,49 @@ int params_text_set(params_text *text, const char *key_equals_value)
     return take(text, "--set", key, equals + 1, false);
 }
 
-/* inih calls back without saying where it is: its lines are read here, so that they can be counted. */
-typedef struct {
-    params_text *text;
-    const char *path;
-    FILE *file;
-    long line;
-    bool in_value;  /* a key stands above in this section, so that a value can go on */
-    bool continued; /* the line begins with a blank: inih takes it as more of the one before */
-    int result;
-} ini_reading;
-
-/* Remarks may follow a value after a blank; inih's versions differ on them in lines that go on. */
-static void cut_remark(char *line)
-{
-    for (char *c = line; *c != '\0'; c++) {
-        if ((*c == ';' || *c == '#') && c > line && isspace((unsigned char)c[-1])) {
-            *c = '\0';
-            return;
-        }
-    }
-}
-
-static char *next_ini_line(char *buffer, int size, void *context)
-{
-    ini_reading *reading = context;
-    int c = EOF, used = 0;
-    reading->line++;
-    while (reading->result == SIM_OK && (c = getc(reading->file)) != EOF && c != '\n') {
-        if (c < ' ' && !isspace(c)) {
-            reading->result = sim_complain("%s:%ld: not a text file", reading->path, reading->line);
-        } else if (used == size - 2) {
-            reading->result =
-                sim_complain("%s:%ld: longer than %d characters; go on with the list on an "
-                             "indented line",
-                             reading->path, reading->line, size - 2);
-        } else {
-            buffer[used++] = (char)c;
-        }
-    }
-    if (reading->result != SIM_OK || (c == EOF && used == 0)) {
-        reading->line--;
-        return NULL;
-    }
-    buffer[used] = '\0';
-    cut_remark(buffer);
-    reading->continued = reading->in_value && isspace((unsigned char)*buffer);
-    if (!reading->continued && buffer[strspn(buffer, " \t")] == '[') {
-        reading->in_value = false;
-    }
-    return buffer;
-}
-
 /* What limber params list --ini writes beside the rod's keys: nothing to a replay. */
 static bool is_devices_own(const char *name)
 {
     return params_find(name) >= ROD_FIELDS_N;
 }
 
-static int take_from_ini(void *context, const char *section, const char *name, const char *value)
+static int take_from_ini(void *context, const ini_piece *piece)
 {
-    ini_reading *reading = context;
-    if (reading->result != SIM_OK) {
-        return 0;
+    if (piece->key == NULL) {
+        return SIM_OK; /* a section with nothing in it may have any name */
     }
-    reading->in_value = true;
-    char origin[160];
-    snprintf(origin, sizeof origin, "%.140s:%ld", reading->path, reading->line);
-    if (strcmp(section, "rod") != 0) {
-        reading->result =
-            sim_complain("%s: '%.40s' stands in section [%.40s]; limber reads only [rod]", origin,
-                         name, section);
-    } else if (!is_devices_own(name)) {
-        reading->result = take(reading->text, origin, name, value, reading->continued);
+    if (strcmp(piece->section, "rod") != 0) {
+        return sim_complain("%s: '%.40s' stands in section [%.40s]; limber reads only [rod]",
+                            piece->origin, piece->key, piece->section);
     }
-    return reading->result == SIM_OK;
+    return is_devices_own(piece->key)
+               ? SIM_OK
+               : take(context, piece->origin, piece->key, piece->value, piece->continued);
 }
 
 int params_text_read_ini(params_text *text, const char *path)
 {
-    ini_reading reading = {.text = text, .path = path, .file = fopen(path, "r")};
-    if (reading.file == NULL) {
-        return sim_complain("%s: %s", path, strerror(errno));
-    }
-    const int line = ini_parse_stream(next_ini_line, &reading, take_from_ini, &reading);
-    const bool unreadable = ferror(reading.file) != 0;
-    fclose(reading.file);
-    if (reading.result == SIM_OK && unreadable) {
-        return sim_complain("%s: cannot be read: %s", path, strerror(errno));
-    }
-    if (reading.result == SIM_OK && line != 0) {
-        return sim_complain("%s:%d: neither a [section], a key = value nor a comment", path, line);
-    }
-    if (reading.result == SIM_OK && reading.line == 0) {
+    long lines_n;
+    const int result = ini_lines_read(path, take_from_ini, text, &lines_n);
+    if (result == SIM_OK && lines_n == 0) {
         return sim_complain("%s: empty; limber-sim params prints a complete file", path);
     }
-    return reading.result;
+    return result;
+}
+
+void params_text_beneath(params_text *text, const params_text *other)
+{
+    for (int i = 0; i < PARAMS_KEYS_N; i++) {
+        if (text->entries[i].values_n == 0) {
+            text->entries[i] = other->entries[i];
+        }
+    }
 }
 
 static int explain(const params_text *text, const rod_refusal *why, const rod_params *params)
 {
     if (why->error == ROD_E_OVERDAMPED) {
-        const params_entry *damper = &text->entries[index_of(rod_field_find("damper"))];
+        const params_entry *damper = &text->entries[params_key_find("damper")];
         const double drag = (double)params->drag[why->joint];
         return sim_complain(
             "%s: drag + damper of joint %d is %g N m s: with its inertia at %g Hz at "
@@ -251,26 +190,56 @@ static int explain(const params_text *text, const rod_refusal *why, const rod_pa
         return sim_complain("--rate: a tick of %g s is out of bounds, must be %g ... %g Hz",
                             (double)why->value, 1.0 / (double)why->max, 1.0 / (double)why->min);
     }
+    if (why->field != NULL && params_material_is_asked(text)) {
+        return sim_complain(
+            "rod: %s of joint %d comes out as %g %s, must be %g ... %g: ask for %s, or "
+            "change diameter or total_length",
+            why->field->name, why->joint + 1, (double)why->value,
+            params_text_unit(why->field, params->model), (double)why->min, (double)why->max,
+            why->error == ROD_E_DAMPER ? "less damping_ratio" : "fewer links");
+    }
     return sim_complain("rod: joint %d: %s", why->joint + 1, rod_error_text(why->error));
 }
 
 /* The first value written for a key, or what it is without. */
 static int first_of(const params_text *text, const char *key, int otherwise)
 {
-    const params_entry *entry = &text->entries[index_of(rod_field_find(key))];
+    const params_entry *entry = &text->entries[params_key_find(key)];
     return entry->values_n > 0 ? (int)entry->values[0] : otherwise;
+}
+
+/* The rod before single keys change it. */
+static int resolve_base(const params_text *text, double rate_hz, rod_params *params)
+{
+    const bool of_material = params_material_is_asked(text);
+    const int model = first_of(text, "model", of_material ? ROD_MODEL_ELASTIC : ROD_MODEL_CONTOUR);
+    if (text->preset != NULL) {
+        rod_preset_fill(text->preset, model, first_of(text, "links", text->preset->links_n),
+                        params);
+    } else {
+        rod_params_defaults(params);
+        params->model = model;
+        params->links_n =
+            first_of(text, "links", of_material ? LINKS_OF_MATERIAL : params->links_n);
+    }
+    params->tick_s = (float)(1.0 / rate_hz);
+    rod_blank blank;
+    if (!of_material) {
+        return SIM_OK;
+    }
+    const int result = params_material_blank(text, &blank);
+    if (result == SIM_OK) {
+        rod_blank_fill(&blank, params);
+    }
+    return result;
 }
 
 int params_text_resolve(const params_text *text, double rate_hz, rod_params *params)
 {
-    if (text->preset != NULL) {
-        rod_preset_fill(text->preset, first_of(text, "model", ROD_MODEL_CONTOUR),
-                        first_of(text, "links", text->preset->links_n), params);
-    } else {
-        rod_params_defaults(params);
-        params->links_n = first_of(text, "links", params->links_n);
+    const int result = resolve_base(text, rate_hz, params);
+    if (result != SIM_OK) {
+        return result;
     }
-    params->tick_s = (float)(1.0 / rate_hz);
     for (int i = 0; i < ROD_FIELDS_N; i++) {
         const rod_field *field = &rod_fields[i];
         const params_entry *entry = &text->entries[i];

@@ -94,8 +94,7 @@ void params_text_write_ini(const rod_params *params, const char *title, FILE *ou
 {
     fprintf(out, "# %s\n# Read by: limber-sim replay TRACK --params THIS_FILE\n\n[rod]\n", title);
     for (int i = 0; i < ROD_FIELDS_N; i++) {
-        if (params_text_is_settable(&rod_fields[i]) &&
-            rod_field_is_read(&rod_fields[i], params->model)) {
+        if (params_key_is_settable(i) && rod_field_is_read(&rod_fields[i], params->model)) {
             write_field(&rod_fields[i], params, out);
         }
     }

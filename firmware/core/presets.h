@@ -8,22 +8,11 @@
 #ifndef LIMBER_PRESETS_H
 #define LIMBER_PRESETS_H
 
-#include "rod_params.h"
+#include "rod_material.h"
 
 typedef struct {
     float first, last;
 } rod_taper;
-
-/* A rod of one material and one shape of section, whose thickness runs linearly from butt to tip. */
-typedef struct {
-    float length_m;
-    float bending_n_m2; /* E I at the butt; goes with the fourth power of the thickness */
-    float mass_kg_m;    /* rho A at the butt; with its square */
-    float tip;          /* thickness of the tip, where the butt's is 1 */
-    float
-        relaxation_s; /* c / k of every joint: 2 zeta / omega for a mode that is to be damped by zeta */
-    float drag_n_s_m2; /* of the air, per metre of rod */
-} rod_blank;
 
 typedef struct {
     const char *name;
@@ -32,10 +21,10 @@ typedef struct {
     int hold_n;
     float hand_coupling; /* beta of joint 1, to the hand: 0 lets it turn freely */
     rod_taper length_m, inertia, drag, coupling, smoothing, spring, damper, limit_rad;
-    rod_blank elastic;
+    rod_blank blank;
 } rod_preset;
 
-enum { ROD_PRESETS_N = 5 };
+enum { ROD_PRESETS_N = 6 };
 extern const rod_preset rod_presets[ROD_PRESETS_N];
 
 /* The preset of that name, or NULL. */
