@@ -10,9 +10,15 @@
 #include "output.h"
 #include "sim.h"
 
-typedef enum { LOG_CHANGED = 'C', LOG_PLACED = 'P', LOG_TICKED = 'T' } log_kind;
+typedef enum {
+    LOG_CHANGED = 'C',
+    LOG_OBJECT = 'O',
+    LOG_SHAPE = 'S',
+    LOG_PLACED = 'P',
+    LOG_TICKED = 'T'
+} log_kind;
 
-static const char MAGIC[16] = "limber body 1\n";
+static const char MAGIC[16] = "limber body 2\n";
 
 typedef struct {
     char magic[16];
@@ -42,6 +48,16 @@ static void changed(void *context, const params_set *set, bool all_new)
     add(context, LOG_CHANGED, all_new, set, sizeof *set);
 }
 
+static void put(void *context, int index, const scene_object *object)
+{
+    add(context, LOG_OBJECT, (uint8_t)index, object, sizeof *object);
+}
+
+static void shaped(void *context, const body_shape *shape)
+{
+    add(context, LOG_SHAPE, 0, shape, sizeof *shape);
+}
+
 static void placed(void *context, const float *positions_rad, int servos_n)
 {
     add(context, LOG_PLACED, 0, positions_rad, (size_t)servos_n * sizeof *positions_rad);
@@ -64,7 +80,7 @@ static void ticked(void *context, const body_input *input, const body *b)
 
 device_watcher body_log_watcher(body_log *log)
 {
-    return (device_watcher){log, changed, placed, ticked};
+    return (device_watcher){log, changed, put, shaped, placed, ticked};
 }
 
 int body_log_open(body_log *log, const char *path)
@@ -147,10 +163,18 @@ static void take_tick(rerun *r, const body_input *input)
 static bool take_record(rerun *r, FILE *file, int kind, int detail)
 {
     body_input input;
+    body_shape shape;
+    scene_object object;
     float positions_rad[SERVOS_MAX];
     switch (kind) {
     case LOG_CHANGED:
         return fread(&r->set, sizeof r->set, 1, file) == 1 && take_change(r, detail != 0);
+    case LOG_OBJECT:
+        return r->started && fread(&object, sizeof object, 1, file) == 1 &&
+               body_put_object(&r->body, detail, &object, NULL) == ROD_OK;
+    case LOG_SHAPE:
+        return r->started && fread(&shape, sizeof shape, 1, file) == 1 &&
+               body_take_shape(&r->body, &shape) == ROD_OK;
     case LOG_PLACED: {
         const size_t servos_n = r->started ? (size_t)r->body.map.servos_n : 0;
         return servos_n > 0 && fread(positions_rad, sizeof(float), servos_n, file) == servos_n &&

@@ -163,6 +163,19 @@ static void reboot(void *context)
     h->rebooting = true;
 }
 
+/* A board forgets what stands around it; here the world remembers. */
+static void put_objects(host_device *h)
+{
+    params_refusal why;
+    char text[MESSAGES_TEXT_MAX + 1];
+    for (int i = 0; i < SCENE_OBJECTS_MAX; i++) {
+        const scene_object *object = &h->objects.body[i].object;
+        if (object->kind != SCENE_NONE && !device_put_object(&h->device, i, object, text, &why)) {
+            telemetry_log(&h->device, LEVEL_WARNING, why.text);
+        }
+    }
+}
+
 /* Program and processor start; the world is as it was. */
 static void boot(host_device *h, float tick_s, int links_n)
 {
@@ -207,6 +220,7 @@ static void boot(host_device *h, float tick_s, int links_n)
     pwm_stop(h);
     bus_abort(h);
     device_init(&h->device, &h->hal, &h->config, &h->boot);
+    put_objects(h);
 }
 
 void host_device_start(host_device *h, float tick_s, int links_n)

@@ -37,6 +37,7 @@ typedef struct {
     uint32_t jumped_us; /* by which injected clock jumps are ahead */
     bool rebooting;
     uint32_t line_baud; /* to be believed in: 0 where the line has no rate */
+    scene objects;      /* stand there at every start, but what there is no time for */
     bool late;          /* this machine is behind: what has come in since belongs to a later tick */
 } host_device;
 

@@ -40,6 +40,7 @@ seq:
         'message_type::angles': angles
         'message_type::nodes': nodes
         'message_type::pose_log': pose_log
+        'message_type::touch': touch
         'message_type::arm': arm
         'message_type::disarm': disarm
         'message_type::estop': estop
@@ -57,6 +58,9 @@ seq:
         'message_type::servo_ping': servo_ping
         'message_type::servo_set_baud': servo_set_baud
         'message_type::servo_test': servo_test
+        'message_type::scene_put': scene_put
+        'message_type::scene_get': scene_get
+        'message_type::shape': shape
         'message_type::ack': ack
         'message_type::nack': nack
         'message_type::param_info': param_info
@@ -65,6 +69,7 @@ seq:
         'message_type::fault': fault
         'message_type::boot_report': boot_report
         'message_type::servo_info': servo_info
+        'message_type::scene_object': scene_object
         # end cases
   - id: crc
     type: u4
@@ -449,6 +454,20 @@ types:
       - id: flags
         type: u1
         doc: "pose log flags"
+  touch:
+    doc: "how hard objects push the rod; while any does; from the device"
+    seq:
+      - id: tick
+        type: u4
+        doc: "number of the tick since start"
+      - id: contacts_n
+        type: u2
+        doc: "places where the rod touches: nodes, one that touches two objects counts twice"
+      - id: force_newton
+        type: f4
+        repeat: expr
+        repeat-expr: 3
+        doc: "sum of what pushes the rod, in the world"
   arm:
     doc: "give the servos torque and start following; to the device"
     seq:
@@ -614,6 +633,62 @@ types:
       - id: turn_rad
         type: f4
         doc: "by so much, and back; at most 0.5 either way"
+  scene_put:
+    doc: "puts an object in place, or takes it away; to the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "chosen by the sender, not 0; the answer repeats it"
+      - id: index
+        type: u1
+        doc: "its place, from 0; 255 with kind 0: all of them"
+      - id: kind
+        type: u1
+        enum: object_kind
+        doc: "object kind; 0: the place is free, and the rest is 0 or ignored"
+      - id: place_m
+        type: f4
+        repeat: expr
+        repeat-expr: 3
+        doc: "of its centre in the world, of a plane any point of its surface; within 1000 m"
+      - id: orientation_xyzw
+        type: f4
+        repeat: expr
+        repeat-expr: 4
+        doc: "object to world, of unit length; a plane's free side is +z"
+      - id: half_m
+        type: f4
+        repeat: expr
+        repeat-expr: 3
+        doc: "box: half its edges, less the radius; capsule: z, half its length, less the radius"
+      - id: radius_m
+        type: f4
+        doc: "sphere, capsule; of a box what rounds its edges; 0.001 ... 1000, plane: 0"
+      - id: friction
+        type: f4
+        doc: "Coulomb's coefficient between it and the rod, 0 ... 10"
+  scene_get:
+    doc: "asks for a SCENE_OBJECT; to the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "chosen by the sender, not 0; the answer repeats it"
+      - id: index
+        type: u1
+        doc: "from 0; beyond the last place: NACK"
+  shape:
+    doc: "pulls the joints to these angles, or lets them go; to the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "chosen by the sender, not 0; the answer repeats it"
+      - id: strength_nm
+        type: f4
+        doc: "like a spring of so many N m at each joint, 0 ... 1e6; 0: lets it go"
+      - id: blend_s
+        type: f4
+        doc: "comes and goes within this time, 0 ... 60 s"
+      - {id: angles_tenth_mrad, type: angle_pair, repeat: eos}
   ack:
     doc: "done; from the device"
     seq:
@@ -810,6 +885,51 @@ types:
       - id: temperature_c
         type: f4
         doc: "degrees Celsius inside"
+  scene_object:
+    doc: "an object, and how hard it pushes the rod; from the device"
+    seq:
+      - id: request_id
+        type: u2
+        doc: "that of the SCENE_GET"
+      - id: index
+        type: u1
+        doc: "that of the SCENE_GET"
+      - id: objects_max
+        type: u1
+        doc: "how many places there are"
+      - id: kind
+        type: u1
+        enum: object_kind
+        doc: "object kind; 0: the place is free, and the rest is 0 or ignored"
+      - id: place_m
+        type: f4
+        repeat: expr
+        repeat-expr: 3
+        doc: "of its centre in the world, of a plane any point of its surface; within 1000 m"
+      - id: orientation_xyzw
+        type: f4
+        repeat: expr
+        repeat-expr: 4
+        doc: "object to world, of unit length; a plane's free side is +z"
+      - id: half_m
+        type: f4
+        repeat: expr
+        repeat-expr: 3
+        doc: "box: half its edges, less the radius; capsule: z, half its length, less the radius"
+      - id: radius_m
+        type: f4
+        doc: "sphere, capsule; of a box what rounds its edges; 0.001 ... 1000, plane: 0"
+      - id: friction
+        type: f4
+        doc: "Coulomb's coefficient between it and the rod, 0 ... 10"
+      - id: contacts_n
+        type: u2
+        doc: "nodes that touch it"
+      - id: force_newton
+        type: f4
+        repeat: expr
+        repeat-expr: 3
+        doc: "sum of what it pushes the rod with, in the world"
   # end types
 enums:
   # begin enums
@@ -828,6 +948,7 @@ enums:
     0x11: angles
     0x12: nodes
     0x13: pose_log
+    0x14: touch
     0x20: arm
     0x21: disarm
     0x22: estop
@@ -845,6 +966,9 @@ enums:
     0x39: servo_ping
     0x3a: servo_set_baud
     0x3b: servo_test
+    0x3c: scene_put
+    0x3d: scene_get
+    0x3e: shape
     0x40: ack
     0x41: nack
     0x42: param_info
@@ -853,6 +977,7 @@ enums:
     0x45: fault
     0x46: boot_report
     0x47: servo_info
+    0x48: scene_object
   device_state:
     0:
       id: boot
@@ -1188,4 +1313,20 @@ enums:
     1:
       id: estop_ignored
       doc: "there is no e-stop input here (emulator, host)"
+  object_kind:
+    0:
+      id: none
+      doc: "nothing"
+    1:
+      id: plane
+      doc: "a half-space: all below its own z = 0 is solid"
+    2:
+      id: sphere
+      doc: "a ball"
+    3:
+      id: capsule
+      doc: "a rod with round ends"
+    4:
+      id: box
+      doc: "a box with rounded edges"
   # end enums

@@ -32,6 +32,7 @@
     MESSAGE(ANGLES, angles, 0x11, ANGLES, FROM_DEVICE, ANGLES, "the joint angles of a tick")                     \
     MESSAGE(NODES, nodes, 0x12, NODES, FROM_DEVICE, NODES, "where the link ends are, for graphics")              \
     MESSAGE(POSE_LOG, pose_log, 0x13, NONE, FROM_DEVICE, TELEMETRY, "the exact base pose a tick used")           \
+    MESSAGE(TOUCH, touch, 0x14, NONE, FROM_DEVICE, TELEMETRY, "how hard objects push the rod; while any does")   \
     MESSAGE(ARM, arm, 0x20, NONE, TO_DEVICE, KEPT, "give the servos torque and start following")                 \
     MESSAGE(DISARM, disarm, 0x21, NONE, TO_DEVICE, KEPT, "stop following and take the torque away")              \
     MESSAGE(ESTOP, estop, 0x22, NONE, TO_DEVICE, KEPT, "torque off within one tick, latched")                    \
@@ -49,6 +50,9 @@
     MESSAGE(SERVO_PING, servo_ping, 0x39, NONE, TO_DEVICE, KEPT, "asks one servo for a SERVO_INFO")              \
     MESSAGE(SERVO_SET_BAUD, servo_set_baud, 0x3A, NONE, TO_DEVICE, KEPT, "gives a bus servo another baud rate")  \
     MESSAGE(SERVO_TEST, servo_test, 0x3B, NONE, TO_DEVICE, KEPT, "turns one servo a little and back")            \
+    MESSAGE(SCENE_PUT, scene_put, 0x3C, NONE, TO_DEVICE, KEPT, "puts an object in place, or takes it away")      \
+    MESSAGE(SCENE_GET, scene_get, 0x3D, NONE, TO_DEVICE, KEPT, "asks for a SCENE_OBJECT")                        \
+    MESSAGE(SHAPE, shape, 0x3E, ANGLES, TO_DEVICE, KEPT, "pulls the joints to these angles, or lets them go")    \
     MESSAGE(ACK, ack, 0x40, NONE, FROM_DEVICE, KEPT, "done")                                                     \
     MESSAGE(NACK, nack, 0x41, TEXT, FROM_DEVICE, KEPT, "not done, and why")                                      \
     MESSAGE(PARAM_INFO, param_info, 0x42, TEXT, FROM_DEVICE, KEPT, "what a parameter is")                        \
@@ -56,9 +60,18 @@
     MESSAGE(PRESET_INFO, preset_info, 0x44, TEXT, FROM_DEVICE, KEPT, "what a preset is")                         \
     MESSAGE(FAULT, fault, 0x45, TEXT, FROM_DEVICE, KEPT, "the device stopped, and why")                          \
     MESSAGE(BOOT_REPORT, boot_report, 0x46, NONE, FROM_DEVICE, KEPT, "how the device came up; follows its HELLO") \
-    MESSAGE(SERVO_INFO, servo_info, 0x47, NONE, FROM_DEVICE, KEPT, "how a servo is")
+    MESSAGE(SERVO_INFO, servo_info, 0x47, NONE, FROM_DEVICE, KEPT, "how a servo is")                             \
+    MESSAGE(SCENE_OBJECT, scene_object, 0x48, NONE, FROM_DEVICE, KEPT, "an object, and how hard it pushes the rod")
 
 #define REQUEST_ID(of, ONE) ONE(of, u16, request_id, "chosen by the sender, not 0; the answer repeats it")
+
+#define OBJECT(of, ONE, MANY)                                                                                    \
+    ONE(of, u8, kind, "object kind; 0: the place is free, and the rest is 0 or ignored")                         \
+    MANY(of, f32, 3, place_m, "of its centre in the world, of a plane any point of its surface; within 1000 m")  \
+    MANY(of, f32, 4, orientation_xyzw, "object to world, of unit length; a plane's free side is +z")             \
+    MANY(of, f32, 3, half_m, "box: half its edges, less the radius; capsule: z, half its length, less the radius") \
+    ONE(of, f32, radius_m, "sphere, capsule; of a box what rounds its edges; 0.001 ... 1000, plane: 0")          \
+    ONE(of, f32, friction, "Coulomb's coefficient between it and the rod, 0 ... 10")
 
 #define HELLO_FIELDS(of, ONE, MANY, NAME)                                                                        \
     ONE(of, u16, request_id, "chosen by the PC; the device's answer repeats it; 0 unasked, after a start")       \
@@ -181,6 +194,11 @@
     ONE(of, u8, state, "device state")                                                                           \
     ONE(of, u8, flags, "pose log flags")
 
+#define TOUCH_FIELDS(of, ONE, MANY, NAME)                                                                        \
+    ONE(of, u32, tick, "number of the tick since start")                                                         \
+    ONE(of, u16, contacts_n, "places where the rod touches: nodes, one that touches two objects counts twice")   \
+    MANY(of, f32, 3, force_newton, "sum of what pushes the rod, in the world")
+
 #define ARM_FIELDS(of, ONE, MANY, NAME) REQUEST_ID(of, ONE)
 #define DISARM_FIELDS(of, ONE, MANY, NAME) REQUEST_ID(of, ONE)
 #define ESTOP_FIELDS(of, ONE, MANY, NAME) REQUEST_ID(of, ONE)
@@ -228,6 +246,17 @@
     ONE(of, u8, id, "of the servo, or a PWM channel from 1")                                                     \
     ONE(of, u32, baud, "to talk to it at; 0: that of the servo_baud parameter")                                  \
     ONE(of, f32, turn_rad, "by so much, and back; at most 0.5 either way")
+#define SCENE_PUT_FIELDS(of, ONE, MANY, NAME)                                                                    \
+    REQUEST_ID(of, ONE)                                                                                          \
+    ONE(of, u8, index, "its place, from 0; 255 with kind 0: all of them")                                        \
+    OBJECT(of, ONE, MANY)
+#define SCENE_GET_FIELDS(of, ONE, MANY, NAME)                                                                    \
+    REQUEST_ID(of, ONE)                                                                                          \
+    ONE(of, u8, index, "from 0; beyond the last place: NACK")
+#define SHAPE_FIELDS(of, ONE, MANY, NAME)                                                                        \
+    REQUEST_ID(of, ONE)                                                                                          \
+    ONE(of, f32, strength_nm, "like a spring of so many N m at each joint, 0 ... 1e6; 0: lets it go")            \
+    ONE(of, f32, blend_s, "comes and goes within this time, 0 ... 60 s")
 
 #define ACK_FIELDS(of, ONE, MANY, NAME)                                                                          \
     ONE(of, u16, request_id, "that of the request")                                                              \
@@ -288,6 +317,13 @@
     ONE(of, f32, position_rad, "of its shaft, 0 in the middle of its travel")                                    \
     ONE(of, f32, supply_v, "volts it sees")                                                                      \
     ONE(of, f32, temperature_c, "degrees Celsius inside")
+#define SCENE_OBJECT_FIELDS(of, ONE, MANY, NAME)                                                                 \
+    ONE(of, u16, request_id, "that of the SCENE_GET")                                                            \
+    ONE(of, u8, index, "that of the SCENE_GET")                                                                  \
+    ONE(of, u8, objects_max, "how many places there are")                                                        \
+    OBJECT(of, ONE, MANY)                                                                                        \
+    ONE(of, u16, contacts_n, "nodes that touch it")                                                              \
+    MANY(of, f32, 3, force_newton, "sum of what it pushes the rod with, in the world")
 // clang-format on
 
 #endif

@@ -152,6 +152,13 @@
 #define BOOT_FLAGS(VALUE)                                                                                        \
     VALUE(BOOT, ESTOP_IGNORED, 0x01, "there is no e-stop input here (emulator, host)")
 
+#define OBJECT_KINDS(VALUE)                                                                                      \
+    VALUE(OBJECT, NONE, 0, "nothing")                                                                            \
+    VALUE(OBJECT, PLANE, 1, "a half-space: all below its own z = 0 is solid")                                    \
+    VALUE(OBJECT, SPHERE, 2, "a ball")                                                                           \
+    VALUE(OBJECT, CAPSULE, 3, "a rod with round ends")                                                           \
+    VALUE(OBJECT, BOX, 4, "a box with rounded edges")
+
 /* All of them: list, member, whether they are flags (bits that may be combined), title. */
 #define MESSAGE_VALUES(LIST)                                                                                     \
     LIST(DEVICE_STATES, device_states, false, "device state")                                                    \
@@ -170,7 +177,8 @@
     LIST(RESET_CAUSES, reset_causes, false, "reset cause")                                                       \
     LIST(CLOCK_KINDS, clock_kinds, false, "clock kind")                                                          \
     LIST(SETTINGS_ORIGINS, settings_origins, false, "settings origin")                                           \
-    LIST(BOOT_FLAGS, boot_flags, true, "boot flags")
+    LIST(BOOT_FLAGS, boot_flags, true, "boot flags")                                                             \
+    LIST(OBJECT_KINDS, object_kinds, false, "object kind")
 // clang-format on
 
 /* DEVICE_ACTIVE, FAULT_SOLVER, REASON_BOUNDS, ANGLES_LIMITED_RATE, ... */

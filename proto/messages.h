@@ -26,7 +26,7 @@
 
 enum {
     PROTOCOL_MAJOR = 1,
-    PROTOCOL_MINOR = 2,
+    PROTOCOL_MINOR = 3,
     MESSAGES_ANGLES_MAX = 256, /* joints */
     MESSAGES_NODES_MAX = 91,   /* nodes in one chunk: 4.3 chunks in a rod of 256 links */
     MESSAGES_VALUES_MAX = 256, /* entries of a parameter */

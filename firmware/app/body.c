@@ -37,6 +37,7 @@ bool body_change(body *b, const params_set *set, bool all_new, params_refusal *w
 {
     servo_setup setup;
     rod_refusal refusal;
+    const int links_n = rod_params_of(&b->rod)->links_n;
     if (all_new && !servo_setup_make(&setup, set, why)) {
         return false;
     }
@@ -44,6 +45,7 @@ bool body_change(body *b, const params_set *set, bool all_new, params_refusal *w
     if (error != ROD_OK) {
         return params_refuse_rod(error, &refusal, why);
     }
+    b->shape_ticks = set->rod.links_n == links_n ? b->shape_ticks : 0;
     b->blend_s = set->device.blend_s;
     if (all_new) {
         lay_servos(b, &setup);
@@ -53,6 +55,42 @@ bool body_change(body *b, const params_set *set, bool all_new, params_refusal *w
         servo_blend_from_motion(&b->blend, &b->map, targets_rad, (uint32_t)(b->blend_s * 1e6f));
     }
     return true;
+}
+
+rod_error body_put_object(body *b, int index, const scene_object *object, scene_refusal *refusal)
+{
+    const rod_error error = scene_put(&b->scene, index, object, refusal);
+    /* an empty scene would cost the rod a look at every place */
+    rod_set_scene(&b->rod, scene_objects_n(&b->scene) > 0 ? &b->scene : NULL);
+    return error;
+}
+
+rod_error body_take_shape(body *b, const body_shape *shape)
+{
+    const bool pulls = shape->angles_n > 0 && shape->strength_nm > 0.0f;
+    const rod_error error =
+        rod_set_shape(&b->rod, pulls ? shape->angle_rad : NULL, shape->strength_nm, shape->blend_s);
+    if (error == ROD_OK) {
+        const float blend_ticks = shape->blend_s / rod_params_of(&b->rod)->tick_s;
+        if (pulls || b->shape_ticks > 0) {
+            b->shape_ticks = pulls ? UINT32_MAX : (uint32_t)blend_ticks + 2u;
+        }
+    }
+    return error;
+}
+
+int body_touch(const body *b, int object, vec3 *force_newton)
+{
+    int contacts_n, touching_n = 0;
+    const touch_contact *contact = rod_contacts(&b->rod, &contacts_n);
+    *force_newton = (vec3){0.0f, 0.0f, 0.0f};
+    for (int i = 0; i < contacts_n; i++) {
+        if (object == BODY_ANY_OBJECT || contact[i].object == object) {
+            *force_newton = vec3_add(*force_newton, contact[i].force_newton);
+            touching_n++;
+        }
+    }
+    return touching_n;
 }
 
 servo_error body_place(body *b, const float *positions_rad)
@@ -86,6 +124,9 @@ void body_tick(body *b, const body_input *input)
             rod_reset(&b->rod);
         }
         b->finite = rod_step(&b->rod, &input->base) == ROD_OK;
+        if (b->finite && b->shape_ticks > 0 && b->shape_ticks < UINT32_MAX) {
+            b->shape_ticks--;
+        }
     }
     b->follow = input->follow;
     if (input->blend_us > 0) {

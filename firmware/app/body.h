@@ -1,8 +1,8 @@
-/* body.h - the rod and the servos that follow it: everything of the device that computes angles.
+/* body.h - the rod, what it touches, and the servos that follow it: everything of the device that computes angles.
  *
- * One tick takes one body_input and gives goals; nothing else gets in. So a log of body_inputs, replayed, gives
- * the same goals to the bit (limber-sim replay --per-tick), and the rest of the device (line, clock,
- * states) can be tested without the rod.
+ * One tick takes one body_input and gives goals; beside it only the calls that change something get in, between two
+ * ticks. So a log of both, replayed, gives the same goals to the bit (limber-sim replay --per-tick), and the rest of
+ * the device (line, clock, states) can be tested without the rod.
  *
  *     base pose -> rod_step -> joint angles -> targets -> blend -> limits -> goals
  *
@@ -30,8 +30,18 @@ typedef struct {
     rod_pose base;
 } body_input;
 
+/* A shape for the rod to take: as many angles as it has links, or none: then it is let go. Plain values, too. */
+typedef struct {
+    float strength_nm, blend_s;
+    int32_t angles_n;
+    rod_joint angle_rad[ROD_MAX_LINKS];
+} body_shape;
+
 typedef struct {
     rod rod;
+    scene scene; /* what the rod may touch; empty after body_init */
+    uint32_t
+        shape_ticks; /* a shape will pull at the rod for so long; UINT32_MAX: until it is let go */
     servo_map map;
     servo_blend blend;
     float blend_s;
@@ -48,6 +58,18 @@ bool body_init(body *b, const params_set *set, params_refusal *why);
 /* Other parameters from the next tick on. all_new: the servo side too (only without torque: goals start from
  * straight); otherwise the rod's, through a blend from motion over blend_s. On false nothing has changed. */
 bool body_change(body *b, const params_set *set, bool all_new, params_refusal *why);
+
+/* Puts an object in a place of the scene (scene_put); it stays over changes of parameters. On an error nothing has
+ * changed. */
+rod_error body_put_object(body *b, int index, const scene_object *object, scene_refusal *refusal);
+
+/* Pulls the rod into a shape, or lets it go (rod_set_shape); it stays over changes of parameters, but not of the
+ * number of links. */
+rod_error body_take_shape(body *b, const body_shape *shape);
+
+/* How many nodes touch that object of the scene, or any (BODY_ANY_OBJECT), and what they are pushed with in all. */
+enum { BODY_ANY_OBJECT = -1 };
+int body_touch(const body *b, int object, vec3 *force_newton);
 
 /* The goals are where the servos are: before they get torque. Returns SERVO_OK or SERVO_E_POSITION. */
 servo_error body_place(body *b, const float *positions_rad);

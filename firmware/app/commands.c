@@ -140,9 +140,9 @@ void commands_take(device *d, const message *m, const frame *header)
     /* every request begins with its id */
     const uint16_t request_id = m->arm.request_id;
     const bool stops = m->type == MESSAGE_DISARM || m->type == MESSAGE_ESTOP; /* every time */
-    const bool changes = m->type >= MESSAGE_ARM && m->type <= MESSAGE_SERVO_TEST &&
+    const bool changes = m->type >= MESSAGE_ARM && m->type <= MESSAGE_SHAPE &&
                          m->type != MESSAGE_PARAM_LIST && m->type != MESSAGE_PARAM_GET &&
-                         m->type != MESSAGE_PRESET_LIST;
+                         m->type != MESSAGE_PRESET_LIST && m->type != MESSAGE_SCENE_GET;
     if (!in_session(d, m, header)) {
         if (changes) {
             answers_refuse_for(d, request_id, m->type, REASON_SESSION, NULL);
@@ -217,6 +217,11 @@ void commands_take(device *d, const message *m, const frame *header)
     case MESSAGE_SERVO_SET_BAUD:
     case MESSAGE_SERVO_TEST:
         servo_commands_take(d, m);
+        break;
+    case MESSAGE_SCENE_PUT:
+    case MESSAGE_SCENE_GET:
+    case MESSAGE_SHAPE:
+        scene_commands_take(d, m);
         break;
     default: /* of a kind that only the device sends */
         d->link.counts.unknown++;

@@ -58,6 +58,7 @@ static void default_params(device *d)
 static void load_settings(device *d)
 {
     uint32_t payload_n, version;
+    static const tick_load NOTHING_MORE = {0, false}; /* scene and shape do not outlive a start */
     params_refusal why;
     char text[MESSAGES_TEXT_MAX + 1];
     if (settings_boot(&d->settings, d->hal, saved_params_bytes_max()) == SETTINGS_E_FLASH) {
@@ -75,7 +76,7 @@ static void load_settings(device *d)
     saved_params_unpack(d->settings_bytes, payload_n, &d->params.staged);
     d->params.staged.rod.tick_s = d->config.tick_s;
     if (!params_commit(&d->params, true, &why) ||
-        !tick_budget_check(&d->params.in_force, d->boot.clock_hz, text, &why)) {
+        !tick_budget_check(&d->params.in_force, &NOTHING_MORE, d->boot.clock_hz, text, &why)) {
         telemetry_log(d, LEVEL_ERROR, why.text);
         default_params(d);
         faults_raise(&d->faults, FAULT_SETTINGS);

@@ -23,10 +23,12 @@
 #include "supervisor.h"
 
 /* A watcher of everything that happens to the body, tick by tick: the simulator's log. Any may be NULL.
- * changed: params and whether all of them are new; placed: where the servos are. */
+ * changed: params and whether all of them are new; put: an object of the scene; placed: where the servos are. */
 typedef struct {
     void *context;
     void (*changed)(void *context, const params_set *set, bool all_new);
+    void (*put)(void *context, int index, const scene_object *object);
+    void (*shaped)(void *context, const body_shape *shape);
     void (*placed)(void *context, const float *positions_rad, int servos_n);
     void (*ticked)(void *context, const body_input *input, const body *b);
 } device_watcher;
@@ -99,6 +101,7 @@ typedef struct {
         ticks_timed_n;   /* ever; since the last heartbeat */
     uint32_t fault_seen; /* latched causes already told */
     bool pose_log_gap;   /* a POSE_LOG has been dropped since the last one sent */
+    bool touch_told;     /* the last TOUCH sent had contacts: one without them must follow */
 
     uint8_t settings_bytes[DEVICE_SETTINGS_BYTES];
 } device;
@@ -110,11 +113,16 @@ void device_tick(device *d);
 
 /* The pieces of it, in files of their own. */
 bool device_apply_params(device *d, const params_set *set, bool all_new,
-                         params_refusal *why);                        /* to all parts, or to none */
+                         params_refusal *why); /* to all parts, or to none */
+bool device_put_object(
+    device *d, int index, const scene_object *object, char *text,
+    params_refusal *why); /* scene_commands.c, both; `text` as for tick_budget_check */
+bool device_take_shape(device *d, const body_shape *shape, char *text, params_refusal *why);
 void commands_take(device *d, const message *m, const frame *header); /* commands.c */
 void commands_end_tick(device *d);                     /* a SAVE under way, a reboot due */
 void param_commands_take(device *d, const message *m); /* param_commands.c */
 void param_commands_end_tick(device *d);
+void scene_commands_take(device *d, const message *m); /* scene_commands.c */
 void servo_commands_take(device *d, const message *m); /* servo_commands.c */
 void servo_commands_end_tick(device *d);
 uint8_t servo_commands_reason(uint8_t trouble_kind); /* REASON_SERVO... */

@@ -92,6 +92,7 @@ static bool fits_the_line(const device *d, params_refusal *why)
 static void commit(device *d, uint16_t request_id, uint8_t type)
 {
     const bool all_allowed = supervisor_duties[d->supervisor.state].change_all;
+    const tick_load load = {scene_objects_n(&d->body.scene), d->body.shape_ticks > 0};
     params_refusal why;
     char text[MESSAGES_TEXT_MAX + 1];
     if (d->arming.id != 0 || d->servicing.id != 0) {
@@ -99,7 +100,7 @@ static void commit(device *d, uint16_t request_id, uint8_t type)
         return;
     }
     if (!fits_the_line(d, &why) ||
-        !tick_budget_check(&d->params.staged, d->boot.clock_hz, text, &why) ||
+        !tick_budget_check(&d->params.staged, &load, d->boot.clock_hz, text, &why) ||
         !params_check_changes(&d->params, all_allowed, &why) ||
         !device_apply_params(d, &d->params.staged, all_allowed, &why)) {
         answers_refuse(d, request_id, type, &why);

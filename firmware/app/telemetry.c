@@ -1,5 +1,5 @@
 /* telemetry.c - what the device sends unasked: HELLO and BOOT_REPORT once, then ANGLES, NODES, POSE_LOG,
- * HEARTBEAT, STATS, FAULT, LOG, each at its own rate. */
+ * HEARTBEAT, TOUCH, STATS, FAULT, LOG, each at its own rate. */
 #include <string.h>
 
 #include "device.h"
@@ -254,6 +254,21 @@ void telemetry_stats(device *d, uint16_t request_id)
     (void)link_send(&d->link, &m, d->now_us);
 }
 
+/* While anything touches, and once more when nothing does. */
+static void send_touch(device *d)
+{
+    vec3 force;
+    const int contacts_n = body_touch(&d->body, BODY_ANY_OBJECT, &force);
+    if (contacts_n == 0 && !d->touch_told) {
+        return;
+    }
+    const message m = {.type = MESSAGE_TOUCH,
+                       .touch = {d->tick, (uint16_t)contacts_n, {force.x, force.y, force.z}}};
+    if (link_send(&d->link, &m, d->now_us)) {
+        d->touch_told = contacts_n > 0;
+    }
+}
+
 /* Each cause is told once, when it comes. */
 static void send_faults(device *d)
 {
@@ -305,6 +320,7 @@ void telemetry_send(device *d)
     }
     if (is_due(d, &d->to_heartbeat_ticks, 10.0f)) {
         send_heartbeat(d);
+        send_touch(d);
     }
     if (is_due(d, &d->to_stats_ticks, 1.0f)) {
         telemetry_stats(d, 0);

@@ -58,6 +58,23 @@ static const message EXAMPLES[] = {
               .maximum = 1e6f,
               .field = "spring",
               .text = "spring of joint 6 is -1, allowed is 0 to 1e+06 N m"}},
+    {.type = MESSAGE_SCENE_PUT,
+     .scene_put = {.request_id = 4,
+                   .index = 2,
+                   .kind = OBJECT_CAPSULE,
+                   .place_m = {0.0f, -0.5f, 1.25f},
+                   .orientation_xyzw = {0.0f, 0.70710677f, 0.0f, 0.70710677f},
+                   .half_m = {0.0f, 0.0f, 0.5f},
+                   .radius_m = 0.05f,
+                   .friction = 0.3f}},
+    {.type = MESSAGE_SHAPE,
+     .shape = {.request_id = 5,
+               .strength_nm = 2.5f,
+               .blend_s = 0.5f,
+               .angles_n = 2,
+               .angles_tenth_mrad = {{7854, 0}, {-7854, 1}}}},
+    {.type = MESSAGE_TOUCH,
+     .touch = {.tick = 654321, .contacts_n = 3, .force_newton = {0.0f, -1.5f, 0.25f}}},
 };
 
 void put_good(FILE *out)

@@ -32,11 +32,11 @@ class Commands(ToolCase):
 
     def test_info(self):
         text = self.good("info")
-        for words in ("fake 0.0 test, protocol 1.2", "3 links of at most 64", "simulated", "DISARMED", "168 MHz"):
+        for words in ("fake 0.0 test, protocol 1.3", "3 links of at most 64", "simulated", "DISARMED", "168 MHz"):
             self.assertIn(words, text)
         info = self.good_json("info")
         self.assertEqual((info["device"], info["links"], info["state"], info["protocol"]),
-                         ("fake", 3, "DISARMED", "1.2"))
+                         ("fake", 3, "DISARMED", "1.3"))
         self.assertEqual(info["boot"]["cause"], "POWER")
         self.assertLess(info["clock_error_us"], 20000)
         # the tool tells the device of each exchange that was answered

@@ -107,7 +107,7 @@ class WrongDevice(ToolCase):
         self.fails(4, ["info", "--port", f"pty:{name}"], "there is no such port")
 
     def test_versions(self):
-        self.fails(4, ["info", "--port", self.fake("--major", "2").port], "speaks protocol 2.2", "get a newer limber")
+        self.fails(4, ["info", "--port", self.fake("--major", "2").port], "speaks protocol 2.3", "get a newer limber")
         err = self.fails(4, ["info", "--port", self.fake("--nack", 1, "--reason", 2).port],
                          "other major version", "not with me")
         self.assertIn("this limber", err)
@@ -121,7 +121,7 @@ class Answers(ToolCase):
     def test_repeated_until_answered(self):
         device = self.fake("--drop-requests", "3")
         self.good("info", "--port", device.port)
-        self.assertEqual(device.requests(), ["STATS_GET"])
+        self.assertEqual(device.requests(), ["STATS_GET"] + 8 * ["SCENE_GET"])
 
     def test_never_answered(self):
         device = self.fake("--drop-requests", "9")

@@ -58,6 +58,7 @@ static void say_hello(fake_device *d, uint16_t request_id)
     if (d->ways.major > 0) {
         hello.hello.protocol_major = (uint8_t)d->ways.major;
     }
+    hello.hello.protocol_minor = (uint8_t)(PROTOCOL_MINOR - d->ways.older);
     hello.hello.layout_hash += d->ways.other_hash;
     fake_send(d, &hello);
     fake_send(d, &(message){.type = MESSAGE_BOOT_REPORT,

@@ -9,12 +9,13 @@
 #include "fake_line.h"
 #include "messages.h"
 
-enum { FAKE_PARAMS_N = 6, FAKE_JOINTS_N = 3 };
+enum { FAKE_PARAMS_N = 6, FAKE_JOINTS_N = 3, FAKE_OBJECTS_N = 8 };
 
 /* How it misbehaves; all zeros: not at all. */
 typedef struct {
     const char *pty_link, *text; /* text: says only that, like a board of another make */
     bool mute, deaf, other_hash, garbage, reboots, still;
+    int older; /* protocol minors that it is behind */
     int major, state, tick_hz, angles_hz, nack_type, nack_reason;
     int drop_requests;            /* ignores each request so many times */
     int drop_poses, reject_poses; /* every so-many-th */
@@ -38,6 +39,7 @@ typedef struct {
     uint32_t newest_us, poses_n;
     uint16_t last_request;
     int ignored_n;
+    message_scene_put objects[FAKE_OBJECTS_N];
     float in_force[FAKE_PARAMS_N][FAKE_JOINTS_N], staged[FAKE_PARAMS_N][FAKE_JOINTS_N];
 } fake_device;
 
@@ -54,6 +56,14 @@ void fake_run(fake_device *d);
 void fake_requests_init(fake_device *d);
 void fake_request(fake_device *d, const message *m);
 void fake_tell_stats(fake_device *d, uint16_t request_id); /* 0: unasked */
+
+void fake_ack(fake_device *d, const message *m);
+void fake_nack(fake_device *d, const message *m, message_nack why);
+
+/* fake_scene.c */
+void fake_scene_put(fake_device *d, const message *m);
+void fake_scene_show(fake_device *d, const message *m);
+void fake_shape(fake_device *d, const message *m);
 
 /* fake_swing.c: a device that somebody moves, to be watched. To be called often. */
 void fake_swing(fake_device *d, uint32_t now_us);

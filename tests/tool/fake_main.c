@@ -21,6 +21,7 @@ int main(int argc, char **argv)
                                        {"text", 0, POPT_ARG_STRING, &d.ways.text, 0, NULL, NULL},
                                        {"hold", 0, POPT_ARG_FLOAT, &d.ways.hold_ms, 0, NULL, NULL},
                                        NUMBER("major", major),
+                                       NUMBER("older", older),
                                        NUMBER("state", state),
                                        NUMBER("angles-hz", angles_hz),
                                        NUMBER("nack", nack_type),

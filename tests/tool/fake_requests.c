@@ -83,14 +83,14 @@ static int find(const char *name)
     return -1;
 }
 
-static void ack(fake_device *d, const message *m)
+void fake_ack(fake_device *d, const message *m)
 {
     const message answer = {.type = MESSAGE_ACK, .ack = {m->arm.request_id, m->type}};
     d->stats.commands_done++;
     fake_send(d, &answer);
 }
 
-static void nack(fake_device *d, const message *m, message_nack why)
+void fake_nack(fake_device *d, const message *m, message_nack why)
 {
     message answer = {.type = MESSAGE_NACK, .nack = why};
     answer.nack.request_id = m->arm.request_id;
@@ -102,13 +102,13 @@ static void nack(fake_device *d, const message *m, message_nack why)
 static void arm(fake_device *d, const message *m)
 {
     if (d->state == DEVICE_FAULT || d->state == DEVICE_ESTOP) {
-        nack(d, m, (message_nack){.reason = REASON_LATCHED, .entry = -1});
+        fake_nack(d, m, (message_nack){.reason = REASON_LATCHED, .entry = -1});
     } else if (!d->any_pose || fake_now_us() - d->newest_us > 50000) {
-        nack(d, m, (message_nack){.reason = REASON_NO_POSES, .entry = -1});
+        fake_nack(d, m, (message_nack){.reason = REASON_NO_POSES, .entry = -1});
     } else {
         d->state = d->state == DEVICE_ACTIVE ? DEVICE_ACTIVE : DEVICE_ARMING;
         d->armed_us = fake_now_us();
-        ack(d, m);
+        fake_ack(d, m);
     }
 }
 
@@ -116,7 +116,7 @@ static void describe(fake_device *d, const message *m)
 {
     const int i = m->param_list.index;
     if (i >= FAKE_PARAMS_N) {
-        nack(d, m, (message_nack){.reason = REASON_INDEX, .entry = -1});
+        fake_nack(d, m, (message_nack){.reason = REASON_INDEX, .entry = -1});
         return;
     }
     message answer = {.type = MESSAGE_PARAM_INFO, .param_info = PARAMS[i].info};
@@ -131,7 +131,7 @@ static void get(fake_device *d, const message *m)
 {
     const int i = find(m->param_get.name);
     if (i < 0) {
-        nack(d, m, (message_nack){.reason = REASON_NAME, .entry = -1});
+        fake_nack(d, m, (message_nack){.reason = REASON_NAME, .entry = -1});
         return;
     }
     message answer = {
@@ -164,34 +164,34 @@ static void set(fake_device *d, const message *m)
                 why.value = value;
                 why.minimum = PARAMS[i].info.minimum;
                 why.maximum = PARAMS[i].info.maximum;
-                nack(d, m, why);
+                fake_nack(d, m, why);
                 return;
             }
             d->staged[i][s->first + n] = value;
         }
         fake_tell("staged %s first %d n %d %g", s->name, s->first, s->values_n,
                   (double)s->values[0]);
-        ack(d, m);
+        fake_ack(d, m);
         return;
     }
-    nack(d, m, why);
+    fake_nack(d, m, why);
 }
 
 static void preset(fake_device *d, const message *m)
 {
     for (int i = 0; i < 2; i++) {
         if (strcmp(PRESETS[i][0], m->preset.name) == 0) {
-            ack(d, m);
+            fake_ack(d, m);
             return;
         }
     }
-    nack(d, m, (message_nack){.reason = REASON_NAME, .entry = -1, .text = "foil, whip"});
+    fake_nack(d, m, (message_nack){.reason = REASON_NAME, .entry = -1, .text = "foil, whip"});
 }
 
 static void list_preset(fake_device *d, const message *m)
 {
     if (m->preset_list.index >= 2) {
-        nack(d, m, (message_nack){.reason = REASON_INDEX, .entry = -1});
+        fake_nack(d, m, (message_nack){.reason = REASON_INDEX, .entry = -1});
         return;
     }
     message answer = {.type = MESSAGE_PRESET_INFO,
@@ -230,9 +230,10 @@ void fake_request(fake_device *d, const message *m)
     }
     fake_tell("request %s", messages_name(m->type));
     if (m->type == d->ways.nack_type) {
-        nack(d, m,
-             (message_nack){
-                 .reason = (uint8_t)d->ways.nack_reason, .entry = -1, .text = "because\nI say so"});
+        fake_nack(d, m,
+                  (message_nack){.reason = (uint8_t)d->ways.nack_reason,
+                                 .entry = -1,
+                                 .text = "because\nI say so"});
         return;
     }
     switch (m->type) {
@@ -245,15 +246,15 @@ void fake_request(fake_device *d, const message *m)
     case MESSAGE_DISARM:
         d->state =
             d->state == DEVICE_FAULT || d->state == DEVICE_ESTOP ? d->state : DEVICE_DISARMED;
-        ack(d, m);
+        fake_ack(d, m);
         break;
     case MESSAGE_ESTOP:
         d->state = DEVICE_ESTOP;
-        ack(d, m);
+        fake_ack(d, m);
         break;
     case MESSAGE_CLEAR_FAULT:
         d->state = DEVICE_DISARMED;
-        ack(d, m);
+        fake_ack(d, m);
         break;
     case MESSAGE_PARAM_LIST:
         describe(d, m);
@@ -266,7 +267,7 @@ void fake_request(fake_device *d, const message *m)
         break;
     case MESSAGE_PARAM_COMMIT:
         memcpy(d->in_force, d->staged, sizeof d->in_force);
-        ack(d, m);
+        fake_ack(d, m);
         break;
     case MESSAGE_PARAM_DEFAULTS:
         for (int i = 0; i < FAKE_PARAMS_N; i++) {
@@ -274,10 +275,10 @@ void fake_request(fake_device *d, const message *m)
                 d->staged[i][entry] = PARAMS[i].info.initial;
             }
         }
-        ack(d, m);
+        fake_ack(d, m);
         break;
     case MESSAGE_PARAM_SAVE:
-        ack(d, m);
+        fake_ack(d, m);
         break;
     case MESSAGE_PRESET:
         preset(d, m);
@@ -285,7 +286,16 @@ void fake_request(fake_device *d, const message *m)
     case MESSAGE_PRESET_LIST:
         list_preset(d, m);
         break;
+    case MESSAGE_SCENE_PUT:
+        fake_scene_put(d, m);
+        break;
+    case MESSAGE_SCENE_GET:
+        fake_scene_show(d, m);
+        break;
+    case MESSAGE_SHAPE:
+        fake_shape(d, m);
+        break;
     default:
-        nack(d, m, (message_nack){.reason = REASON_UNSUPPORTED, .entry = -1});
+        fake_nack(d, m, (message_nack){.reason = REASON_UNSUPPORTED, .entry = -1});
     }
 }

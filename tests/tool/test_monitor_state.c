@@ -116,6 +116,38 @@ static void limits_show_for_their_second_with_their_share(void)
     says(MONITOR_TEXT_LIMITS, "no limit acts");
 }
 
+static void touching_shows_while_it_is_told(void)
+{
+    says(MONITOR_TEXT_TOUCH, "");
+    const message beat = {.type = MESSAGE_HEARTBEAT, .heartbeat = {.state = DEVICE_ACTIVE}};
+    message m = {.type = MESSAGE_TOUCH,
+                 .touch = {.contacts_n = 3, .force_newton = {-3.0f, 0.0f, 4.0f}}};
+    for (int i = 0; i < 5; i++) {
+        monitor_state_take(&state, &beat, 0);
+        monitor_state_take(&state, &m, 0);
+        says(MONITOR_TEXT_TOUCH, "touches at 3 nodes, 5 N (-3, 0, 4)");
+    }
+    m.touch = (message_touch){.contacts_n = 1};
+    monitor_state_take(&state, &m, 0);
+    says(MONITOR_TEXT_TOUCH, "touches at 1 node, 0 N (0, 0, 0)");
+    m.touch.contacts_n = 0;
+    monitor_state_take(&state, &m, 0);
+    says(MONITOR_TEXT_TOUCH, "");
+}
+
+/* The line may lose the one that says that it is over. */
+static void a_touch_that_is_not_told_again_is_over(void)
+{
+    const message beat = {.type = MESSAGE_HEARTBEAT, .heartbeat = {.state = DEVICE_ACTIVE}};
+    const message m = {.type = MESSAGE_TOUCH, .touch = {.contacts_n = 2}};
+    monitor_state_take(&state, &m, 0);
+    monitor_state_take(&state, &beat, 0);
+    monitor_state_take(&state, &beat, 0);
+    TEST_ASSERT_EQUAL_UINT(2, state.touch.contacts_n);
+    monitor_state_take(&state, &beat, 0);
+    says(MONITOR_TEXT_TOUCH, "");
+}
+
 static void angles_are_degrees(void)
 {
     take_angles(1, 0, 0, 0);
@@ -295,6 +327,8 @@ int main(void)
     RUN_TEST(poses_are_timed_by_the_angles_that_name_them);
     RUN_TEST(no_pose_is_not_timed);
     RUN_TEST(limits_show_for_their_second_with_their_share);
+    RUN_TEST(touching_shows_while_it_is_told);
+    RUN_TEST(a_touch_that_is_not_told_again_is_over);
     RUN_TEST(angles_are_degrees);
     RUN_TEST(counters_tell_by_how_much_they_grew);
     RUN_TEST(counters_and_uptime_wrap);

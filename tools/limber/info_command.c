@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "link_options.h"
+#include "scene_requests.h"
 #include "stats_request.h"
 #include "texts.h"
 
@@ -37,7 +38,13 @@ static void print_counter(void *context, const char *name, uint32_t value)
     }
 }
 
-static void print_info(const session *s, const message_stats *stats)
+/* What the device was asked for, beside what it tells by itself. */
+typedef struct {
+    message_stats stats;
+    int objects_n; /* in its scene; -1: it is older than those */
+} answers;
+
+static void print_info(const session *s, const answers *a)
 {
     const message_hello *device = &s->device;
     const message_heartbeat *beat = &s->heartbeat;
@@ -50,6 +57,9 @@ static void print_info(const session *s, const message_stats *stats)
     printf("rod        %d links of at most %d; tick %g Hz of at most %g; angles at %g Hz\n",
            device->links_n, device->links_max, (double)device->tick_hz, (double)device->tick_max_hz,
            (double)device->angles_hz);
+    if (a->objects_n >= 0) {
+        printf("scene      %d object%s to touch\n", a->objects_n, a->objects_n == 1 ? "" : "s");
+    }
     if (device->line_baud != 0) {
         printf("line       %u baud\n", device->line_baud);
     }
@@ -67,7 +77,7 @@ static void print_info(const session *s, const message_stats *stats)
     }
     printf("clock      known to within %d us\n", clock_sync_error_us(&s->clock, limber_now_us()));
     printf("counters since the start (those not 0)\n");
-    stats_each(stats, print_counter, NULL);
+    stats_each(&a->stats, print_counter, NULL);
     print_counter(NULL, "lengths_restored", s->rod_stats.lengths_restored);
 }
 
@@ -95,7 +105,7 @@ static cJSON *boot_json(const message_boot_report *boot)
     return json;
 }
 
-static cJSON *info_json(const session *s, const message_stats *stats)
+static cJSON *info_json(const session *s, const answers *a)
 {
     const message_hello *device = &s->device;
     const message_heartbeat *beat = &s->heartbeat;
@@ -114,6 +124,9 @@ static cJSON *info_json(const session *s, const message_stats *stats)
     cJSON_AddItemToObject(json, "tick_max_hz", texts_float_json(device->tick_max_hz));
     cJSON_AddItemToObject(json, "angles_hz", texts_float_json(device->angles_hz));
     cJSON_AddNumberToObject(json, "line_baud", device->line_baud);
+    if (a->objects_n >= 0) {
+        cJSON_AddNumberToObject(json, "objects", a->objects_n);
+    }
     cJSON_AddStringToObject(json, "state", session_state_name(s));
     cJSON_AddStringToObject(json, "fault", message_value_name(&message_values_faults, beat->fault));
     cJSON_AddItemToObject(json, "flags",
@@ -127,25 +140,28 @@ static cJSON *info_json(const session *s, const message_stats *stats)
         cJSON_AddItemToObject(json, "boot", boot_json(&s->boot));
     }
     cJSON *counters = cJSON_AddObjectToObject(json, "counters");
-    stats_each(stats, add_counter, counters);
+    stats_each(&a->stats, add_counter, counters);
     add_counter(counters, "lengths_restored", s->rod_stats.lengths_restored);
     return json;
 }
 
 static int tell(link_options *link, session *s)
 {
-    message_stats stats;
+    answers a;
     int result = link_open(link, s);
     if (result == SIM_OK) {
         result = session_wait_for_state(s);
     }
     if (result == SIM_OK) {
-        result = stats_request(s, &stats);
+        result = stats_request(s, &a.stats);
+    }
+    if (result == SIM_OK) {
+        result = scene_requests_count(s, &a.objects_n);
     }
     if (result == SIM_OK && link->json) {
-        texts_print_json(info_json(s, &stats));
+        texts_print_json(info_json(s, &a));
     } else if (result == SIM_OK) {
-        print_info(s, &stats);
+        print_info(s, &a);
     }
     return result;
 }

@@ -36,6 +36,8 @@ int limber_disarm_command(int argc, const char **argv);
 int limber_estop_command(int argc, const char **argv);
 int limber_clear_command(int argc, const char **argv);
 int limber_servo_command(int argc, const char **argv);
+int limber_scene_command(int argc, const char **argv);
+int limber_shape_command(int argc, const char **argv);
 int limber_record_command(int argc, const char **argv);
 int limber_latency_command(int argc, const char **argv);
 int limber_monitor_command(int argc, const char **argv);

@@ -161,6 +161,9 @@ void monitor_state_take(monitor_state *m, const message *message, uint32_t devic
         m->heartbeat = message->heartbeat;
         m->heartbeat_known = true;
         m->state = m->heartbeat.state;
+        if (++m->beats_since_touch > 2) {
+            m->touch = (message_touch){0}; /* the one that said so was lost */
+        }
         if (m->heartbeat.tick_max_us > m->window.tick_max_us) {
             m->window.tick_max_us = m->heartbeat.tick_max_us;
         }
@@ -170,6 +173,10 @@ void monitor_state_take(monitor_state *m, const message *message, uint32_t devic
         break;
     case MESSAGE_STATS:
         take_stats(m, &message->stats);
+        break;
+    case MESSAGE_TOUCH:
+        m->touch = message->touch;
+        m->beats_since_touch = 0;
         break;
     case MESSAGE_FAULT:
         m->fault = message->fault;

@@ -6,7 +6,7 @@
  *     monitor_state_lost(&m, s.why);                       it is over
  *     monitor_state_refresh(&m, limber_now_us());          before it is drawn or printed
  *
- * It asks the device nothing: HEARTBEAT (10 Hz), STATS (1 Hz), ANGLES and FAULT come by themselves. What is
+ * It asks the device nothing: HEARTBEAT (10 Hz), STATS (1 Hz), ANGLES, TOUCH and FAULT come by themselves. What is
  * called "the last second" is the last whole window of about that long; a rate is 0 when nothing came in it.
  * One thread; no I/O, no heap; messages are copied. A message costs less than a microsecond.
  */
@@ -54,7 +54,9 @@ typedef struct {
     message_angles angles; /* the newest */
     message_fault fault;   /* the newest of this session */
     uint8_t state;         /* newest of HEARTBEAT and ANGLES */
-    double largest_deg;    /* of any angle since begin: for the scale of bars */
+    message_touch touch;   /* the newest; none for two HEARTBEATs: nothing touches */
+    int beats_since_touch;
+    double largest_deg; /* of any angle since begin: for the scale of bars */
 
     /* in the last second */
     double angles_hz;

@@ -84,6 +84,14 @@ static void tell_latency(const pose_delays *delays, monitor_text text)
            delays_quantile_ms(&delays->whole, 0.99));
 }
 
+static void tell_touch(const message_touch *touch, monitor_text text)
+{
+    const double x = (double)touch->force_newton[0], y = (double)touch->force_newton[1],
+                 z = (double)touch->force_newton[2];
+    append(text, "touches at %d node%s, %.3g N (%.3g, %.3g, %.3g)", touch->contacts_n,
+           touch->contacts_n == 1 ? "" : "s", sqrt(x * x + y * y + z * z), x, y, z);
+}
+
 bool monitor_text_of(const monitor_state *m, monitor_piece piece, monitor_text text)
 {
     *text = '\0';
@@ -116,6 +124,11 @@ bool monitor_text_of(const monitor_state *m, monitor_piece piece, monitor_text t
         break;
     case MONITOR_TEXT_LIMITS:
         tell_limits(m, text);
+        break;
+    case MONITOR_TEXT_TOUCH:
+        if (m->touch.contacts_n > 0) {
+            tell_touch(&m->touch, text);
+        }
         break;
     case MONITOR_TEXT_FLAGS:
         if (m->heartbeat_known) {

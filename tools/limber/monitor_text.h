@@ -18,6 +18,7 @@ typedef enum {
     MONITOR_TEXT_POSES,   /* "poses 100/s, refused 0, lost 0": a second, all three */
     MONITOR_TEXT_PACE,    /* "apart 10.0 ms, jitter 0.31, max 12.4" */
     MONITOR_TEXT_LIMITS,  /* flags of ANGLES, and in how many of them: "limited rate 12 %" */
+    MONITOR_TEXT_TOUCH,   /* "touches at 3 nodes, 1.24 N (-0.2, 0, 1.22)": what pushes the rod */
     MONITOR_TEXT_FLAGS,   /* of HEARTBEAT */
     MONITOR_TEXTS_N
 } monitor_piece;

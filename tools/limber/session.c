@@ -106,6 +106,7 @@ static bool is_answer(const message *m, uint16_t *id)
     case MESSAGE_PARAM_VALUE:
     case MESSAGE_PRESET_INFO:
     case MESSAGE_SERVO_INFO:
+    case MESSAGE_SCENE_OBJECT:
     case MESSAGE_STATS:
         memcpy(id, (const char *)m + messages_info(m->type)->fields[0].offset, sizeof *id);
         return *id != 0;
@@ -128,6 +129,8 @@ static bool fits(const message *answer, uint8_t asked)
         return answer->type == MESSAGE_PRESET_INFO;
     case MESSAGE_SERVO_PING:
         return answer->type == MESSAGE_SERVO_INFO;
+    case MESSAGE_SCENE_GET:
+        return answer->type == MESSAGE_SCENE_OBJECT;
     default:
         return answer->type == MESSAGE_ACK;
     }

@@ -90,6 +90,11 @@ bool source_next_live(source *s, source_pose *pose)
     return false;
 }
 
+const double *source_origin_m(const source *s)
+{
+    return s->options.live == NULL ? s->file.origin_m : s->begun ? s->origin_m : NULL;
+}
+
 static int by_size(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;

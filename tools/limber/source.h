@@ -43,6 +43,9 @@ bool source_next(source *s, source_pose *pose);
 /* Live: the next pose of what s->input has read. */
 bool source_next_live(source *s, source_pose *pose);
 
+/* Where the poses' world begins in the source's own: at its first pose, be it sent or not. NULL: none has come yet. */
+const double *source_origin_m(const source *s);
+
 /* Tracks: the usual time between poses (median), from first to last pose, and how many there are. */
 double source_interval_s(const source *s);
 double source_duration_s(const source *s);

@@ -47,6 +47,7 @@ void stream_send(stream *st, const rod_pose *pose, uint64_t captured_us)
 static bool goes_on(stream *st, int *result)
 {
     stream_step_arming(st);
+    stream_scene_step(st->options.scene, &st->s, source_origin_m(st->source));
     stream_show_progress(st);
     if (interrupt_came()) {
         st->interrupted = true;

@@ -19,18 +19,20 @@
 #include "pose_track.h"
 #include "session.h"
 #include "source.h"
+#include "stream_scene.h"
 
 /* A live source may fall silent for so long that the device relaxes or goes limp; when poses come again it is armed
  * again, since that is what a live stream is for. A device that is lost is another matter: see rearm. */
 
 typedef struct {
     const char *port;
-    bool arm;           /* before the first pose, and disarm at the end */
-    bool reconnect;     /* go on after the device was lost ... */
-    bool rearm;         /* ... and arm it again */
-    double speed;       /* times the track's own pace; 0: as fast as the line takes it */
-    monitor_view *view; /* open, to be drawn while it runs; NULL: a line of progress */
-    pose_track *poses;  /* where the poses that the device used are written; NULL: nowhere */
+    bool arm;            /* before the first pose, and disarm at the end */
+    bool reconnect;      /* go on after the device was lost ... */
+    bool rearm;          /* ... and arm it again */
+    double speed;        /* times the track's own pace; 0: as fast as the line takes it */
+    monitor_view *view;  /* open, to be drawn while it runs; NULL: a line of progress */
+    pose_track *poses;   /* where the poses that the device used are written; NULL: nowhere */
+    stream_scene *scene; /* what the rod touches; NULL: whatever the device has */
 } stream_options;
 
 typedef enum {

@@ -78,7 +78,8 @@ void stream_step_arming(stream *st)
     }
     switch (st->arming) {
     case ARMING_WAIT:
-        if (st->session_sent_n > 0 && now_us - st->asked_us >= ASK_AGAIN_US &&
+        if (st->s.request != REQUEST_WAITING && st->session_sent_n > 0 &&
+            now_us - st->asked_us >= ASK_AGAIN_US &&
             ((st->s.heartbeat_known && (st->s.heartbeat.flags & HEARTBEAT_POSES_GOOD) != 0) ||
              now_us - st->arming_us >= GOOD_MAX_US)) {
             ask(st);

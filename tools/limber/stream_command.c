@@ -24,7 +24,8 @@ enum {
     OPTION_GRAPHICS,
     OPTION_ANGLES,
     OPTION_POSES,
-    OPTION_MONITOR
+    OPTION_MONITOR,
+    OPTION_SCENE
 };
 
 static const char EXAMPLES[] =
@@ -36,6 +37,7 @@ static const char EXAMPLES[] =
     "  limber stream hand.txt --poses run.txt            # then: limber-sim replay run.txt "
     "--report "
     "run.html\n"
+    "  limber stream hand.txt --scene table.ini          # see limber scene --help\n"
     "  limber stream vrpn:Tracker0@192.168.1.5           # OptiTrack, Vicon, any VRPN server\n"
     "  limber stream osc:39539                           # Vive, VMC apps, Unity on this PC\n"
     "  limber stream osc:0.0.0.0:39539#LHR-1B2C3D4E      # from another PC, that tracker\n"
@@ -62,6 +64,7 @@ static const char EXAMPLES[] =
     "-x z -y). Where the device's nodes_rate is 0 it is 60 for as long as that lasts.\n"
     "A track is held at its first pose until the device follows, then played; positions count from "
     "its first pose.\n"
+    "--scene: in the track's or the tracker's own world. The objects stay after the stream.\n"
     "--mount: from the tracker to the rod's base, seen from the tracker: m along its axes, then "
     "degrees, yaw about z\n"
     "first, pitch about the new y, roll about the new x. It comes after --up, --left-handed and "
@@ -78,7 +81,7 @@ typedef struct {
     source_options source;
     bool speed_given, monitor;
     int up, handed;
-    char *angles_path, *poses_path, *graphics;
+    char *angles_path, *poses_path, *scene_path, *graphics;
 } choices;
 
 static int take_speed(choices *c, const char *text)
@@ -141,6 +144,10 @@ static int take_option(choices *c, int option, const char *text)
         return SIM_OK;
     case OPTION_MONITOR:
         c->monitor = true;
+        return SIM_OK;
+    case OPTION_SCENE:
+        free(c->scene_path);
+        c->scene_path = strdup(text);
         return SIM_OK;
     case OPTION_POSES:
         free(c->poses_path);
@@ -246,8 +253,13 @@ static int run(poptContext context, choices *c)
 {
     source src;
     graphics drawn = {0};
+    stream_scene objects;
     const char *const path = options_one_argument(context, "stream", "track");
     int result = path == NULL ? SIM_BAD_INPUT : settle_source(c, path);
+    if (result == SIM_OK) {
+        result = stream_scene_open(&objects, c->scene_path);
+        c->stream.scene = &objects;
+    }
     if (result == SIM_OK) {
         result = settle_view(c);
     }
@@ -288,6 +300,9 @@ int limber_stream_command(int argc, const char **argv)
         {"poses", 0, POPT_ARG_STRING, NULL, OPTION_POSES,
          "write the poses that the device used, tick by tick: a track for limber-sim replay",
          "OUT.txt"},
+        {"scene", 0, POPT_ARG_STRING, NULL, OPTION_SCENE,
+         "objects that the rod touches, and no others; saved again while it runs, read again",
+         "FILE.ini"},
         {"monitor", 0, POPT_ARG_NONE, NULL, OPTION_MONITOR,
          "show it live in the terminal; q stops, as Ctrl-C does", NULL},
         {"graphics", 'g', POPT_ARG_STRING, NULL, OPTION_GRAPHICS,
@@ -318,6 +333,7 @@ int limber_stream_command(int argc, const char **argv)
     }
     free(c.angles_path);
     free(c.poses_path);
+    free(c.scene_path);
     free(c.graphics);
     poptFreeContext(context);
     link_close(&c.link, NULL);

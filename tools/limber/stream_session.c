@@ -67,6 +67,9 @@ static int begin_session(stream *st)
         result = pose_track_begin(st->options.poses, &st->s);
     }
     if (result == SIM_OK) {
+        result = stream_scene_begin(st->options.scene, &st->s, source_origin_m(st->source));
+    }
+    if (result == SIM_OK) {
         result = stats_request(&st->s, &st->before);
     }
     if (result == SIM_OK) {
