@@ -8,6 +8,8 @@
 #include "host_device.h"
 #include "live.h"
 #include "options.h"
+#include "scene_text.h"
+#include "shape_text.h"
 #include "sim.h"
 
 enum {
@@ -25,6 +27,10 @@ enum {
     OPTION_SERVO_BAUD,
     OPTION_FACTORY,
     OPTION_ECHO,
+    OPTION_SCENE,
+    OPTION_SHAPE,
+    OPTION_SHAPE_STRENGTH,
+    OPTION_SHAPE_BLEND,
 };
 
 static const char EXAMPLES[] =
@@ -32,13 +38,15 @@ static const char EXAMPLES[] =
     "  limber stream --port pty:build/rod build/tracks/star.txt # another\n"
     "  limber-sim device --tcp 127.0.0.1:5555 --flash build/flash.bin --log build/body.log\n"
     "  limber-sim device --pty build/rod --inject noise@2+1:0.001 --inject servo@5+0.1:3\n"
+    "  limber-sim device --pty build/rod --scene host_sim/scenes/ball.ini\n"
     "  limber-sim device --pty build/rod --factory             # see limber servo --help\n\n"
     "Ends with Ctrl-C, and then prints the hash of all angles; limber-sim replay --per-tick LOG "
     "comes to "
     "the same.\n";
 
 typedef struct {
-    char *pty, *tcp, *log, *flash;
+    char *pty, *tcp, *log, *flash, *scene, *shape;
+    double shape_strength_nm, shape_blend_s; /* strength below 0: not given */
     bool at_full_speed;
     long links_n, baud;
     double seconds, rate_hz;
@@ -71,6 +79,16 @@ static int take_option(choices *c, injection *faults, int option, char *text)
         return live_text(&c->log, text);
     case OPTION_FLASH:
         return live_text(&c->flash, text);
+    case OPTION_SCENE:
+        return live_text(&c->scene, text);
+    case OPTION_SHAPE:
+        return live_text(&c->shape, text);
+    case OPTION_SHAPE_STRENGTH:
+        return live_number("--shape-strength", text, 0.0, (double)ROD_SHAPE_STRENGTH_MAX_NM,
+                           &c->shape_strength_nm);
+    case OPTION_SHAPE_BLEND:
+        return live_number("--shape-blend", text, 0.0, (double)ROD_SHAPE_BLEND_MAX_S,
+                           &c->shape_blend_s);
     case OPTION_INJECT:
         return injection_add(faults, text);
     case OPTION_SECONDS:
@@ -126,8 +144,45 @@ static int take_options(poptContext context, choices *c, injection *faults, bool
         return sim_complain("device: unexpected '%s'; try limber-sim device --help",
                             poptPeekArg(context));
     }
+    if ((c->shape == NULL) != (c->shape_strength_nm < 0.0)) {
+        return sim_complain("device: --shape and --shape-strength go together");
+    }
     return (c->pty == NULL) == (c->tcp == NULL)
                ? sim_complain("device: give either --pty LINK or --tcp ADDRESS:PORT")
+               : SIM_OK;
+}
+
+/* What is around the rod when it starts. Whether the device has time for it is told by place. */
+typedef struct {
+    scene_text objects;
+    body_shape shape;
+} surroundings;
+
+static int read_surroundings(const choices *c, surroundings *around)
+{
+    *around = (surroundings){.shape = {.strength_nm = (float)c->shape_strength_nm,
+                                       .blend_s = (float)c->shape_blend_s,
+                                       .angles_n = (int32_t)c->links_n}};
+    const int result = c->scene == NULL ? SIM_OK : scene_text_read_ini(c->scene, &around->objects);
+    return result == SIM_OK && c->shape != NULL
+               ? shape_text_read(c->shape, around->shape.angles_n, around->shape.angle_rad)
+               : result;
+}
+
+/* Of a device that has started: what it had no time for is refused in its own words. */
+static int place(host_device *h, const choices *c, const surroundings *around)
+{
+    char text[MESSAGES_TEXT_MAX + 1];
+    params_refusal why;
+    for (int i = 0; i < around->objects.objects_n; i++) {
+        const scene_text_object *const o = &around->objects.objects[i];
+        if (h->device.body.scene.body[i].object.kind == SCENE_NONE &&
+            !device_put_object(&h->device, i, &o->object, text, &why)) {
+            return sim_complain("%s: %s: %s", c->scene, o->name, why.text);
+        }
+    }
+    return c->shape != NULL && !device_take_shape(&h->device, &around->shape, text, &why)
+               ? sim_complain("%s: %s", c->shape, why.text)
                : SIM_OK;
 }
 
@@ -182,10 +237,20 @@ static int run_device(const choices *c, const injection *faults)
     h->line_baud = (uint32_t)c->baud;
     h->line = (line){.fd = -1, .listen_fd = -1, .kept_fd = -1};
     servo_plant_init(&h->plant, 3, 15.0f);
-    int result = open_all(h, c);
+    surroundings around;
+    int result = read_surroundings(c, &around);
+    for (int i = 0; result == SIM_OK && i < around.objects.objects_n; i++) {
+        (void)scene_put(&h->objects, i, &around.objects.objects[i].object, NULL); /* checked */
+    }
+    if (result == SIM_OK) {
+        result = open_all(h, c);
+    }
     if (result == SIM_OK) {
         live_catch_signals();
         host_device_start(h, (float)(1.0 / c->rate_hz), (int)c->links_n);
+        result = place(h, c, &around);
+    }
+    if (result == SIM_OK) {
         run(h, c);
         printf("ticks      %" PRIu32 "\nhash       %016" PRIx64 "\n", h->log.ticks_n, h->log.hash);
     }
@@ -224,12 +289,23 @@ int sim_device_command(int argc, const char **argv)
          "what the smart servos are set to (1000000)", "BAUD"},
         {"factory", 0, POPT_ARG_NONE, NULL, OPTION_FACTORY,
          "one smart servo as it comes from the factory: id 1, 57600 baud", NULL},
+        {"scene", 0, POPT_ARG_STRING, NULL, OPTION_SCENE,
+         "things to touch, in the place of the poses that come", "FILE.ini"},
+        {"shape", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE,
+         "a shape to take: a table of angles or points, arc:DEGREES or coil:TURNS", "SHAPE"},
+        {"shape-strength", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE_STRENGTH,
+         "how strongly, like a spring of so many N m at each joint", "NM"},
+        {"shape-blend", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE_BLEND,
+         "over how long it sets in (0.5)", "S"},
         {"echo", 0, POPT_ARG_NONE, NULL, OPTION_ECHO, "the device hears itself on the servo bus",
          NULL},
         OPTIONS_END,
     };
-    choices c = {
-        .links_n = 4, .rate_hz = 1000.0, .servos = {.kind = SERVOS_BUS, .baud = HOST_SERVOS_BAUD}};
+    choices c = {.links_n = 4,
+                 .rate_hz = 1000.0,
+                 .shape_strength_nm = -1.0,
+                 .shape_blend_s = 0.5,
+                 .servos = {.kind = SERVOS_BUS, .baud = HOST_SERVOS_BAUD}};
     injection faults = {.faults_n = 0};
     argv[0] = "limber-sim device"; /* what the help calls it */
     poptContext context = poptGetContext(argv[0], argc, argv, table, 0);
@@ -242,6 +318,8 @@ int sim_device_command(int argc, const char **argv)
     free(c.tcp);
     free(c.log);
     free(c.flash);
+    free(c.scene);
+    free(c.shape);
     poptFreeContext(context);
     return result;
 }

@@ -79,6 +79,21 @@ static rod_pose star(int sample)
     return (rod_pose){p, tilted(1.5f * p.x, -1.5f * p.y)};
 }
 
+/* The rod lies level along +x; the hand goes down, rests, goes sideways, rests, comes up and rests. */
+enum { PRESSING_N = 451 };
+
+static rod_pose pressing(int sample)
+{
+    static const vec3 CORNERS[] = {{0.0f, 0.0f, 0.0f},   {0.0f, 0.0f, -0.25f}, {0.0f, 0.0f, -0.25f},
+                                   {0.0f, 0.2f, -0.25f}, {0.0f, 0.2f, -0.25f}, {0.0f, 0.2f, 0.0f},
+                                   {0.0f, 0.2f, 0.0f}};
+    const vec3 p = along_corners(CORNERS, 6, (float)sample / (float)(PRESSING_N - 1));
+    return (rod_pose){p, tilted(0.5f * TRIG_PI, 0.0f)};
+}
+
+const motion motion_pressing = {
+    "pressing", "the rod level, 0.25 m down, 0.2 m sideways and up again", PRESSING_N, pressing};
+
 const motion motions[MOTIONS_N] = {
     {"circular", "one turn of a 0.15 m circle, the hand kept upright", CIRCULAR_N, circular},
     {"linear", "0.5 m to and fro, twice", LINEAR_N, linear},

@@ -1,4 +1,4 @@
-/* motions.h - hand motions made here: the paper's five (its Table 1), at 100 Hz.
+/* motions.h - hand motions made here, at 100 Hz: the paper's five (its Table 1), and one to touch things with.
  *
  * Computed with the core's own trigonometry in float32, so the files are the same on every machine.
  */
@@ -18,5 +18,8 @@ typedef struct {
 
 enum { MOTIONS_N = 5 };
 extern const motion motions[MOTIONS_N];
+
+/* For the scenes in scenes/, which lie under its way. */
+extern const motion motion_pressing;
 
 #endif

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "angle_hash.h"
+#include "replay_touch.h"
 #include "sim.h"
 
 static const double MOST_GB = 2.0; /* seven hours of four links at 1 kHz */
@@ -79,6 +80,9 @@ static int run_ticks(replay *r, rod *rod, float *step_us)
         float *row = r->angles_rad + (size_t)n * (size_t)values_n;
         memcpy(row, rod_angles(rod), (size_t)values_n * sizeof *row);
         r->hash = angle_hash_add(r->hash, row, values_n);
+        if (!replay_touch_keep(r, rod, n)) {
+            return sim_give_up("out of memory for %zu contacts", r->contacts_n);
+        }
         if (bar && (n % bar_step == 0 || n + 1 == r->ticks_n)) {
             show_progress(n + 1, r->ticks_n);
         }
@@ -198,9 +202,36 @@ static void find_lags(replay *r)
     }
 }
 
-int replay_run(const track *source, const rod_params *params, double rate_hz, replay *out)
+static int run_rod(replay *r, float *step_us)
 {
-    *out = (replay){.source = source, .params = *params, .rate_hz = rate_hz};
+    rod rod;
+    int result = replay_touch_place(r);
+    if (result == SIM_OK && rod_init(&rod, &r->params, NULL) != ROD_OK) {
+        result = sim_give_up("the rod refuses parameters that have been checked");
+    }
+    if (result != SIM_OK) {
+        return result;
+    }
+    if (r->around.objects != NULL) {
+        rod_set_scene(&rod, &r->objects);
+    }
+    if (r->around.shape_rad != NULL &&
+        rod_set_shape(&rod, r->around.shape_rad, r->around.shape_strength_nm,
+                      r->around.shape_blend_s) != ROD_OK) {
+        return sim_give_up("%s: the rod refuses a shape that has been checked",
+                           r->around.shape_name);
+    }
+    return run_ticks(r, &rod, step_us);
+}
+
+int replay_run(const track *source, const rod_params *params, double rate_hz,
+               const replay_surroundings *around, replay *out)
+{
+    static const replay_surroundings NOTHING = {0};
+    *out = (replay){.source = source,
+                    .params = *params,
+                    .rate_hz = rate_hz,
+                    .around = around == NULL ? NOTHING : *around};
     const double ticks = track_ticks_count(source, rate_hz);
     const double values = ticks * 2.0 * params->links_n;
     const double gb =
@@ -215,14 +246,11 @@ int replay_run(const track *source, const rod_params *params, double rate_hz, re
     out->ticks = malloc((size_t)out->ticks_n * sizeof *out->ticks);
     out->angles_rad = malloc((size_t)values * sizeof *out->angles_rad);
     float *step_us = malloc((size_t)out->ticks_n * sizeof *step_us);
-    rod rod;
-    int result = SIM_OK;
+    int result;
     if (out->ticks == NULL || out->angles_rad == NULL || step_us == NULL) {
         result = sim_give_up("out of memory for %ld ticks", out->ticks_n);
-    } else if (rod_init(&rod, params, NULL) != ROD_OK) {
-        result = sim_give_up("the rod refuses parameters that have been checked");
     } else {
-        result = run_ticks(out, &rod, step_us);
+        result = run_rod(out, step_us);
     }
     if (result == SIM_OK) {
         sum_up_times(out, step_us);
@@ -239,6 +267,8 @@ void replay_free(replay *r)
 {
     free(r->ticks);
     free(r->angles_rad);
+    free(r->contacts);
+    free(r->contacts_begin);
     *r = (replay){0};
 }
 

@@ -8,6 +8,7 @@
 
 #include "output.h"
 #include "params_text.h"
+#include "report_parts.h"
 #include "sim.h"
 #include "summary.h"
 
@@ -19,45 +20,11 @@ extern const char report_chart_js[], report_chart_js_end[];
 
 static const long FRAMES_MAX = 3000;
 
-/* A list of floats as base64 of their little-endian bytes: a quarter of the size of numbers in text. */
-typedef struct {
-    unsigned char *bytes;
-    size_t bytes_n;
-} float_list;
-
-static void append(float_list *list, float value)
-{
-    memcpy(list->bytes + list->bytes_n, &value, sizeof value);
-    list->bytes_n += sizeof value;
-}
-
-static char *base64(const float_list *list)
-{
-    static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    char *text = malloc(4 * (list->bytes_n / 3 + 1) + 1);
-    if (text == NULL) {
-        return NULL;
-    }
-    char *out = text;
-    for (size_t i = 0; i < list->bytes_n; i += 3) {
-        const size_t left = list->bytes_n - i;
-        const unsigned bits = (unsigned)list->bytes[i] << 16 |
-                              (left > 1 ? (unsigned)list->bytes[i + 1] << 8 : 0) |
-                              (left > 2 ? (unsigned)list->bytes[i + 2] : 0);
-        *out++ = DIGITS[bits >> 18];
-        *out++ = DIGITS[bits >> 12 & 63];
-        *out++ = left > 1 ? DIGITS[bits >> 6 & 63] : '=';
-        *out++ = left > 2 ? DIGITS[bits & 63] : '=';
-    }
-    *out = '\0';
-    return text;
-}
-
 static void append_angles(float_list *list, const replay *r, long tick)
 {
     const float *angles = replay_angles(r, tick);
     for (int i = 0; i < 2 * r->params.links_n; i++) {
-        append(list, angles[i]);
+        float_list_append(list, angles[i]);
     }
 }
 
@@ -67,7 +34,7 @@ static void append_nodes(float_list *list, const replay *r, long tick)
     replay_nodes(r, tick, nodes_m);
     for (int i = 0; i <= r->params.links_n; i++) {
         for (int axis = 0; axis < 3; axis++) {
-            append(list, (float)nodes_m[i][axis]);
+            float_list_append(list, (float)nodes_m[i][axis]);
         }
     }
 }
@@ -75,29 +42,21 @@ static void append_nodes(float_list *list, const replay *r, long tick)
 static void append_attitude(float_list *list, const replay *r, long tick)
 {
     const quat q = r->ticks[tick].base.orientation;
-    append(list, q.x);
-    append(list, q.y);
-    append(list, q.z);
-    append(list, q.w);
+    float_list_append(list, q.x);
+    float_list_append(list, q.y);
+    float_list_append(list, q.z);
+    float_list_append(list, q.w);
 }
 
 static void add_frames(cJSON *page, const char *name, const replay *r, long frame_step,
                        int values_n, void (*append_frame)(float_list *, const replay *, long))
 {
     const size_t frames_n = (size_t)((r->ticks_n - 1) / frame_step + 1);
-    float_list list = {malloc(frames_n * (size_t)values_n * sizeof(float)), 0};
-    if (list.bytes == NULL) {
-        return; /* the page says which array is missing */
-    }
+    float_list list = float_list_for(frames_n * (size_t)values_n);
     for (long tick = 0; tick < r->ticks_n; tick += frame_step) {
         append_frame(&list, r, tick);
     }
-    char *text = base64(&list);
-    if (text != NULL) {
-        cJSON_AddStringToObject(page, name, text);
-    }
-    free(text);
-    free(list.bytes);
+    float_list_add_to(page, name, &list);
 }
 
 static void add_parameters(cJSON *page, const rod_params *params)
@@ -188,6 +147,9 @@ static cJSON *make_page(const replay *r, const char *preset)
     add_frames(page, "angles", r, frame_step, 2 * p->links_n, append_angles);
     add_frames(page, "nodes", r, frame_step, 3 * (p->links_n + 1), append_nodes);
     add_frames(page, "base_q", r, frame_step, 4, append_attitude);
+    if (r->around.objects != NULL) {
+        report_add_touch(page, r, frame_step);
+    }
     return page;
 }
 

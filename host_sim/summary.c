@@ -117,6 +117,69 @@ static void warn_of_limits(summary *s, const replay *r)
     }
 }
 
+static double shortest_link_m(const rod_params *p)
+{
+    double length_m = HUGE_VAL;
+    for (int i = 0; i < p->links_n; i++) {
+        length_m = fmin(length_m, (double)p->length_m[i]);
+    }
+    return length_m;
+}
+
+static double longest_link_m(const rod_params *p)
+{
+    double length_m = 0.0;
+    for (int i = 0; i < p->links_n; i++) {
+        length_m = fmax(length_m, (double)p->length_m[i]);
+    }
+    return length_m;
+}
+
+/* From the middle of an object to the surface that is nearest. */
+static double thickness_m(const scene_object *o)
+{
+    const vec3 half = o->half_m;
+    return o->kind == SCENE_PLANE ? HUGE_VAL
+           : o->kind == SCENE_BOX
+               ? (double)o->radius_m + fmin((double)half.x, fmin((double)half.y, (double)half.z))
+               : (double)o->radius_m;
+}
+
+static void warn_of_thin_objects(summary *s, const replay *r)
+{
+    const scene_text *const t = r->around.objects;
+    const double link_m = longest_link_m(&r->params);
+    const scene_text_object *thinnest = NULL;
+    for (int i = 0; i < t->objects_n; i++) {
+        const double here = thickness_m(&t->objects[i].object);
+        if (here < link_m && (thinnest == NULL || here < thickness_m(&thinnest->object))) {
+            thinnest = &t->objects[i];
+        }
+    }
+    if (thinnest != NULL) {
+        add_warning(
+            s,
+            "%s is %.3g mm from middle to surface and a link is %.3g mm long: nodes touch, the "
+            "links between them do not, and may slip through; more links cut the rod finer",
+            thinnest->name, 1e3 * thickness_m(&thinnest->object), 1e3 * link_m);
+    }
+}
+
+static void warn_of_beginning_inside(summary *s, const replay *r)
+{
+    const scene_text *const t = r->around.objects;
+    for (int i = 0; i < t->objects_n; i++) {
+        const double deep_m = r->touches[i].deepest_first_m;
+        if (deep_m > 0.01 * shortest_link_m(&r->params)) {
+            add_warning(s,
+                        "the rod begins %.3g mm inside %s and is let out at %.3g m/s; objects are "
+                        "where the track is",
+                        1e3 * deep_m, t->objects[i].name, (double)TOUCH_ESCAPE_M_S);
+            return;
+        }
+    }
+}
+
 static void warn(summary *s, const replay *r)
 {
     const track_counts *c = &r->source->counts;
@@ -139,6 +202,10 @@ static void warn(summary *s, const replay *r)
         add_warning(s, "%ld gap%s over 0.25 s: the pose is held and the rod restarts straight",
                     c->gaps, c->gaps == 1 ? "" : "s");
     }
+    if (r->around.objects != NULL) {
+        warn_of_thin_objects(s, r);
+        warn_of_beginning_inside(s, r);
+    }
 }
 
 static void describe_rod(summary *s, const replay *r, const char *preset)
@@ -160,11 +227,44 @@ static void describe_rod(summary *s, const replay *r, const char *preset)
     }
 }
 
+static void describe_touches(summary *s, const replay *r)
+{
+    const scene_text *const t = r->around.objects;
+    const double link_m = shortest_link_m(&r->params);
+    add_row(s, "scene", "%s: %d object%s%s", r->around.scene_path, t->objects_n,
+            t->objects_n == 1 ? "" : "s", r->contacts_n == 0 ? ", nothing touches" : "");
+    for (int i = 0; i < t->objects_n; i++) {
+        const replay_touch *const touch = &r->touches[i];
+        if (touch->ticks_n > 0) {
+            add_row(s, "touches",
+                    "%s: %d node%s, %.3g N at most, %.2g mm deep (%.2g %% of a link), "
+                    "%.3g %% of the time",
+                    t->objects[i].name, touch->nodes_n, touch->nodes_n == 1 ? "" : "s",
+                    touch->force_most_newton, 1e3 * touch->deepest_m,
+                    100.0 * touch->deepest_m / link_m,
+                    100.0 * (double)touch->ticks_n / (double)r->ticks_n);
+        }
+    }
+}
+
+static void describe_surroundings(summary *s, const replay *r)
+{
+    if (r->around.objects != NULL) {
+        describe_touches(s, r);
+    }
+    if (r->around.shape_rad != NULL) {
+        add_row(s, "shape", "%s, like springs of %.4g N m, blended in over %.4g s",
+                r->around.shape_name, (double)r->around.shape_strength_nm,
+                (double)r->around.shape_blend_s);
+    }
+}
+
 void summary_make(const replay *r, const char *preset, summary *s)
 {
     *s = (summary){0};
     describe_track(s, r->source);
     describe_rod(s, r, preset);
+    describe_surroundings(s, r);
     summary_text parts = "";
     if (steps_of(r) > 1) {
         snprintf(parts, sizeof parts, ", each in %d parts", steps_of(r));

@@ -6,7 +6,7 @@
 
 #include "replay.h"
 
-enum { SUMMARY_WARNINGS_MAX = 6, SUMMARY_ROWS_MAX = 12, SUMMARY_TEXT_MAX = 240 };
+enum { SUMMARY_WARNINGS_MAX = 8, SUMMARY_ROWS_MAX = 20, SUMMARY_TEXT_MAX = 240 };
 
 typedef char summary_text[SUMMARY_TEXT_MAX];
 

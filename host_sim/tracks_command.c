@@ -13,21 +13,22 @@
 typedef enum { WHOLE, GAPS, DUPLICATES, FLIPS, STOPS, ZEROS, EUROC } damage;
 
 static const struct {
-    int motion;
+    const motion *motion;
     damage damage;
     const char *file, *what;
 } TRACKS[] = {
-    {0, WHOLE, "circular.txt", NULL},
-    {1, WHOLE, "linear.txt", NULL},
-    {2, WHOLE, "rectangular.txt", NULL},
-    {3, WHOLE, "shaking.txt", NULL},
-    {4, WHOLE, "star.txt", NULL},
-    {3, GAPS, "shaking-gaps.txt", "0.1 s missing at 1.5 s, 0.5 s missing at 3 s"},
-    {3, DUPLICATES, "shaking-duplicates.txt", "every 25th time stamp is repeated"},
-    {3, FLIPS, "shaking-flips.txt", "every 10th quaternion has the other sign"},
-    {4, STOPS, "star-stops.txt", "the hand stops for 0.4 s on every leg"},
-    {4, ZEROS, "star-zeros.txt", "every 20th quaternion is all zeros"},
-    {2, EUROC, "rectangular-euroc.csv", "EuRoC's header: nanoseconds, w before x y z"},
+    {&motions[0], WHOLE, "circular.txt", NULL},
+    {&motions[1], WHOLE, "linear.txt", NULL},
+    {&motions[2], WHOLE, "rectangular.txt", NULL},
+    {&motions[3], WHOLE, "shaking.txt", NULL},
+    {&motions[4], WHOLE, "star.txt", NULL},
+    {&motions[3], GAPS, "shaking-gaps.txt", "0.1 s missing at 1.5 s, 0.5 s missing at 3 s"},
+    {&motions[3], DUPLICATES, "shaking-duplicates.txt", "every 25th time stamp is repeated"},
+    {&motions[3], FLIPS, "shaking-flips.txt", "every 10th quaternion has the other sign"},
+    {&motions[4], STOPS, "star-stops.txt", "the hand stops for 0.4 s on every leg"},
+    {&motions[4], ZEROS, "star-zeros.txt", "every 20th quaternion is all zeros"},
+    {&motions[2], EUROC, "rectangular-euroc.csv", "EuRoC's header: nanoseconds, w before x y z"},
+    {&motion_pressing, WHOLE, "pressing.txt", NULL},
 };
 enum { TRACKS_N = sizeof TRACKS / sizeof TRACKS[0] };
 
@@ -98,13 +99,13 @@ static int write_tracks(const char *folder)
         output out;
         result = output_open(&out, path);
         if (result == SIM_OK) {
-            write_track(out.file, &motions[TRACKS[i].motion], TRACKS[i].damage, TRACKS[i].what);
+            write_track(out.file, TRACKS[i].motion, TRACKS[i].damage, TRACKS[i].what);
             result = output_close(&out, true);
         }
     }
     result = outputs_finish(result);
     for (int i = 0; i < TRACKS_N && result == SIM_OK; i++) {
-        const char *what = TRACKS[i].what == NULL ? motions[TRACKS[i].motion].what : TRACKS[i].what;
+        const char *what = TRACKS[i].what == NULL ? TRACKS[i].motion->what : TRACKS[i].what;
         printf("%-28s %s\n", TRACKS[i].file, what);
     }
     return result;

@@ -14,6 +14,9 @@ function definePlots() {
     { id: 'phi', chosen: joints, place: jointPlace, value: angle(1), room: () => [-0.5, 0.5] },
     { id: 'nodes', chosen: nodes, place: k => k / N, value: (f, k) => nodeValue(f, k, axis), digits: 4,
       room: () => [-0.01, 0.01].map(s => nodeValue(0, 0, axis) + s * D.length) } ];   // rounding noise isn't blown up
+  if (solids.length) plots.push({
+    id: 'force', chosen: new Set(range(0, solids.length - (solids.length > 1 ? 0 : 1))), place: i => i / solids.length,
+    value: forceOf, digits: 2, name: i => i < solids.length ? solids[i].name : 'together', room: () => [0, 0.1] });
   for (const p of plots) {
     p.canvas = $(p.id);
     p.over = el('canvas', { className: 'over' });
@@ -22,7 +25,7 @@ function definePlots() {
     bindPlot(p);
   }
   buildChooser($('jointBar'), 'joint', 1, joints, jointPlace, plots.slice(0, 2));
-  buildChooser($('nodeBar'), 'node', 0, nodes, k => k / N, plots.slice(2));
+  buildChooser($('nodeBar'), 'node', 0, nodes, k => k / N, [plots[2]]);
 }
 function chartOptions(p) {
   const tickStyle = { color: theme.muted, font: { size: 11 } }, grid = { color: theme.line, borderColor: theme.line, tickColor: theme.line };
@@ -46,7 +49,7 @@ function drawCharts() {                       // anew from the theme and the cho
 }
 function fillChart(p) {
   const items = [...p.chosen].sort((a, b) => a - b);
-  p.labels.replaceChildren(...(items.length > 8 ? [] : items.map(i => el('span', { style: `--c:${ramp(p.place(i))}` }, el('b', {}, `${i} `), ''))));
+  p.labels.replaceChildren(...(items.length > 8 ? [] : items.map(i => el('span', { style: `--c:${ramp(p.place(i))}` }, el('b', {}, `${p.name ? p.name(i) : i} `), ''))));
   p.items = items;
   if (p.chart) {
     p.chart.data.datasets = items.map(i => ({ data: points(p, i), borderColor: ramp(p.place(i)), backgroundColor: ramp(p.place(i)) }));

@@ -31,6 +31,7 @@ const theme = {};
 function readTheme() {
   theme.ramp = RAMPS[darkQuery.matches ? 'dark' : 'light'].map(h => [1, 3, 5].map(i => parseInt(h.slice(i, i + 2), 16)));
   for (const name of ['text', 'muted', 'line', 'panel', 'grid', 'ghost', 'accent']) theme[name] = css('--' + name);
+  theme.solid = darkQuery.matches ? [92, 106, 126] : [186, 197, 211];
   theme.axes = darkQuery.matches ? ['#ff6b64', '#55cf7e', '#69a3ff'] : ['#d3322b', '#1d9448', '#2463dd'];
   theme.shade = darkQuery.matches ? 0.42 : 0.15;
 }
@@ -74,8 +75,8 @@ const nodeValue = (f, k, c) => D.nodes[(f * (N + 1) + k) * 3 + c];
 const toView = v => D.up === 'y' ? [v[0], -v[2], v[1]] : v;
 const viewNode = (f, k) => toView([nodeValue(f, k, 0), nodeValue(f, k, 1), nodeValue(f, k, 2)]);
 const mix = (a, b, u) => [lerp(a[0], b[0], u), lerp(a[1], b[1], u), lerp(a[2], b[2], u)];
-function bodyAxes(f) {                        // the columns of the base's rotation matrix, in the view's frame
-  const [x, y, z, w] = D.base_q.subarray(4 * f, 4 * f + 4);
+const bodyAxes = f => frameOf(D.base_q.subarray(4 * f, 4 * f + 4));
+function frameOf([x, y, z, w]) {              // the columns of a rotation matrix, in the view's frame
   return [[1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)],
           [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)],
           [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)]].map(toView);

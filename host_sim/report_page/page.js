@@ -100,6 +100,8 @@ function start() {
   readTheme();
   fillHeader();
   fillTables();
+  loadTouch();
+  $('touch').hidden = !solids.length;
   instant();
   chooseHome();
   placeFloor();

@@ -15,6 +15,7 @@ report_style_css_end:
 report_script_js:
     .incbin "data.js"
     .incbin "view.js"
+    .incbin "touch.js"
     .incbin "charts.js"
     .incbin "page.js"
 report_script_js_end:

@@ -22,7 +22,8 @@ function samplePoints(relative) {             // up to ~300 frames and ~9 nodes 
       if (q.every(finite)) out.push(q);
     }
   }
-  return out.length ? out : [[0, 0, 0]];
+  if (!out.length) out.push([0, 0, 0]);
+  return relative ? out : [...out, ...solidCorners(out)];
 }
 function bounds(points) {
   const lo = [Infinity, Infinity, Infinity], hi = lo.map(v => -v);
@@ -107,7 +108,10 @@ function drawView() {
   drawTrail(N);
   drawGhost();
   drawTriad(false);
-  drawRod();
+  drawRod(true);
+  drawSolids();
+  drawRod(false);
+  drawContacts();
   drawTriad(true);
   showHud();
 }
@@ -178,10 +182,10 @@ function taper(a, b, ra, rb, shift = 0) {     // a quad of half-widths ra, rb ar
   ctx.moveTo(...at(a, ra, 1)); ctx.lineTo(...at(b, rb, 1)); ctx.lineTo(...at(b, rb, -1)); ctx.lineTo(...at(a, ra, -1));
   ctx.closePath();
 }
-function drawRod() {
+function drawRod(hidden) {                    // the links behind something, or those in front of all
   const pts = cur.map(project);
   pts.forEach((p, k) => { if (p) p.r = Math.max(lerp(3, 1.4, k / N), p.s * D.length * lerp(0.0125, 0.0038, k / N)); });
-  const order = [...Array(N).keys()].filter(k => pts[k] && pts[k + 1]).sort((i, j) => pts[j].depth + pts[j + 1].depth - pts[i].depth - pts[i + 1].depth);
+  const order = [...Array(N).keys()].filter(k => pts[k] && pts[k + 1] && isHidden(mix(cur[k], cur[k + 1], 0.5)) === hidden).sort((i, j) => pts[j].depth + pts[j + 1].depth - pts[i].depth - pts[i + 1].depth);
   for (const k of order) {                    // painter's order, far links first; joint k+1 sits at node k
     const a = pts[k], b = pts[k + 1], body = ctx.createLinearGradient(a.x, a.y, b.x, b.y || b.y + 1e-6);
     body.addColorStop(0, ramp(k / N)); body.addColorStop(1, ramp((k + 1) / N));
@@ -193,7 +197,7 @@ function drawRod() {
     drawJoint(a, k);
   }
   const tip = pts[N];
-  if (tip) { disc(tip, tip.r * 2.6 + 2, ramp(1, 0.22)); disc(tip, tip.r * 1.3 + 1, ramp(1)); }
+  if (tip && isHidden(cur[N]) === hidden) { disc(tip, tip.r * 2.6 + 2, ramp(1, 0.22)); disc(tip, tip.r * 1.3 + 1, ramp(1)); }
 }
 function drawJoint(p, k) {                    // with many links the dots shrink, or they would hide the rod
   const r = p.r * (N <= 12 ? 1.25 : N <= 32 ? 0.9 : 0.6) + (N <= 12 ? 0.8 : 0);
@@ -204,7 +208,7 @@ function drawJoint(p, k) {                    // with many links the dots shrink
 }
 function showHud() {
   const tip = Math.hypot(...along(axes[2], D.length).map((v, i) => v - cur[N][i]));
-  $('hud').replaceChildren('tip deflection ', el('b', {}, metres(tip)), finite(tip) ? ` · ${num(100 * tip / D.length, 1)} % of length` : '');
+  $('hud').replaceChildren('tip deflection ', el('b', {}, metres(tip)), finite(tip) ? ` · ${num(100 * tip / D.length, 1)} % of length` : '', ...touchText());
 }
 
 /* ---------- orbit, zoom, pan ---------- */

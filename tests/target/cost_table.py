@@ -30,13 +30,18 @@ ELASTIC = [
     ("elastic_hostile", "one step in a motion no hand can make: three of Newton's steps, not one"),
     ("elastic_hostile_4ms", "the same in a tick of 4 ms, which is several steps"),
     ("elastic_with_force", "one step with a force on it"),
+    ("elastic_to_shape", "one step towards a shape"),
+    ("elastic_among", "one step near eight objects, hardly touching"),
+    ("elastic_rattling", "**one step between eight objects at its worst**: every node comes to touch two"),
     ("elastic_nodes", "its nodes"),
     ("elastic_set_params", "other parameters"),
     ("elastic_tick", "**the whole tick**"),
     ("elastic_tick_full", "the same, with HEARTBEAT and STATS"),
     ("elastic_tick_preset", "the whole tick, and the rod becomes another one in it"),
 ]
-BUDGETS = [("contour", "contour"), ("elastic", "elastic, a tick of 1 ms"), ("elastic_4ms", "elastic, a tick of 4 ms")]
+BUDGETS = [("contour", "contour"), ("elastic", "elastic, a tick of 1 ms"), ("elastic_4ms", "elastic, a tick of 4 ms"),
+           ("contour_among", "contour with eight objects"),
+           ("elastic_among", "elastic with eight objects, a tick of 1 ms")]
 INTERRUPTS = {
     "interrupt_byte_in": "a byte has come in, on the line or the bus",
     "interrupt_byte_out": "a byte may go out",
@@ -46,6 +51,9 @@ MORE = [
     ("step_no_smoothing", "the rod without smoothing"),
     ("step_hold_2", "the rod in two steps a tick"),
     ("step_with_force", "the rod with a force on it"),
+    ("step_to_shape", "the rod drawn to a shape that changes"),
+    ("step_among_objects", "the rod near eight objects, hardly touching"),
+    ("step_rattling", "**the rod between eight objects at its worst**: every node comes to touch two"),
     ("set_params", "other parameters"),
 ]
 

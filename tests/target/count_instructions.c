@@ -31,6 +31,13 @@ static rod_pose hostile_at(int tick)
                       {0.0f, tilt.sin, 0.0f, tilt.cos}};
 }
 
+/* From wall to wall of the crowd below: nodes come to touch anew in every other tick. */
+static rod_pose rattling_at(int tick)
+{
+    const float side = (tick & 2) != 0 ? 1.0f : -1.0f;
+    return (rod_pose){{0.004f * side, 0.001f * (float)(tick % 5), 0.0f}, {0.0f, 0.0f, 0.0f, 1.0f}};
+}
+
 static void no_force(const vec3 *nodes_m, int nodes_n, vec3 *forces_newton, void *context)
 {
     (void)nodes_m, (void)nodes_n, (void)forces_newton, (void)context;
@@ -167,6 +174,7 @@ static void count_contour(int links_n)
     contour_rod(links_n, 50.0f, 2);
     count("step_hold_2", STEP, hand_at);
     count("step_hostile_among", STEP_AMONG_OBJECTS, hostile_at);
+    count("step_rattling", STEP_AMONG_OBJECTS, rattling_at);
 }
 
 static void count_elastic(int links_n)
@@ -177,6 +185,7 @@ static void count_elastic(int links_n)
     count("elastic_with_force", STEP_WITH_FORCE, hand_at);
     count("elastic_among", STEP_AMONG_OBJECTS, hand_at);
     count("elastic_hostile_among", STEP_AMONG_OBJECTS, hostile_at);
+    count("elastic_rattling", STEP_AMONG_OBJECTS, rattling_at);
     count("elastic_to_shape", STEP_TO_SHAPE, hand_at);
     count("elastic_nodes", NODES, hand_at);
     count("elastic_set_params", SET_PARAMS, hand_at);

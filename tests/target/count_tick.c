@@ -146,10 +146,12 @@ static void count_interrupts(void)
     cost_tell("interrupt_tick", 0);
 }
 
-static void tell_budget(const char *name, int model, int links_n, float tick_s)
+static void tell_budget(const char *name, int model, int links_n, float tick_s, int objects_n)
 {
+    const tick_load load = {.objects_n = objects_n};
     printf("# budget %s %d %lu\n", name, links_n,
-           (unsigned long)tick_budget_cycles(model, links_n, tick_s));
+           (unsigned long)(tick_budget_cycles(model, links_n, tick_s) +
+                           tick_budget_load_cycles(model, links_n, tick_s, &load)));
 }
 
 /* The same device with the other model; its parts but for the step are the same. */
@@ -169,9 +171,11 @@ static bool count_model(int model, int links_n)
     for (part which = 0; which < PARTS_N && !elastic; which++) {
         count_part(which, links_n);
     }
-    tell_budget(elastic ? "elastic" : "contour", model, links_n, 1e-3f);
+    tell_budget(elastic ? "elastic" : "contour", model, links_n, 1e-3f, 0);
+    tell_budget(elastic ? "elastic_among" : "contour_among", model, links_n, 1e-3f,
+                SCENE_OBJECTS_MAX);
     if (elastic) {
-        tell_budget("elastic_4ms", model, links_n, 4e-3f);
+        tell_budget("elastic_4ms", model, links_n, 4e-3f, 0);
     }
     return true;
 }

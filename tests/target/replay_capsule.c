@@ -12,6 +12,7 @@
 #include "capsule.h"
 
 static rod subject;
+static scene objects;
 static capsule_header header;
 
 int main(int argc, char **argv)
@@ -23,8 +24,8 @@ int main(int argc, char **argv)
                 "replay_capsule: needs one argument, a file of limber-sim replay --capsule\n");
         return 2;
     }
-    if (rod_init(&subject, &header.params, NULL) != ROD_OK) {
-        fprintf(stderr, "replay_capsule: the rod refuses the capsule's parameters\n");
+    if (capsule_begin(&header, &objects, &subject) != ROD_OK) {
+        fprintf(stderr, "replay_capsule: the rod refuses what the capsule begins with\n");
         return 2;
     }
     uint64_t hash = ANGLE_HASH_START;

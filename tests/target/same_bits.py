@@ -34,6 +34,15 @@ GENERATED += [
     ("linear.txt", [*SOFT, "--set", "links=50", "--rate", "500"]),
     ("shaking.txt", [*SOFT, "--set", "links=1"]),
 ]
+SCENES = pathlib.Path(__file__).resolve().parents[2] / "host_sim" / "scenes"
+FOIL = ["--preset", "foil", "--set", "links=24"]
+GENERATED += [("pressing.txt", [*FOIL, *model, "--scene", str(SCENES / scene)])
+              for model in (["--model", "elastic"], ["--set", "length=0.03667"])
+              for scene in ("ball.ini", "corner.ini", "pole.ini", "table.ini")]
+GENERATED += [
+    ("star.txt", [*SOFT, "--set", "links=10", "--shape", "coil:1", "--shape-strength", "3"]),
+    ("shaking.txt", ["--preset", "whip", "--shape", "arc:120", "--shape-strength", "50"]),
+]
 RECORDED = [["--set", "links=4"], ["--set", "links=50", "--set", "spring=2000"]]
 
 

@@ -19,6 +19,7 @@ EXPORT uint32_t hash_low(void);
 static capsule_header header;
 static capsule_tick tick;
 static rod subject;
+static scene objects;
 static uint64_t hash = ANGLE_HASH_START;
 
 capsule_header *header_place(void)
@@ -33,7 +34,7 @@ capsule_tick *tick_place(void)
 
 int begin(void)
 {
-    return rod_init(&subject, &header.params, NULL);
+    return capsule_begin(&header, &objects, &subject);
 }
 
 int step(void)
