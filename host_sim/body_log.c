@@ -11,6 +11,7 @@
 #include "sim.h"
 
 typedef enum {
+    LOG_START = 'B',
     LOG_CHANGED = 'C',
     LOG_OBJECT = 'O',
     LOG_SHAPE = 'S',
@@ -39,7 +40,9 @@ static void add(body_log *log, log_kind kind, uint8_t detail, const void *bytes,
     if (log->file != NULL) {
         const uint8_t head[2] = {(uint8_t)kind, detail};
         fwrite(head, 1, sizeof head, log->file);
-        fwrite(bytes, 1, bytes_n, log->file);
+        if (bytes_n > 0) {
+            fwrite(bytes, 1, bytes_n, log->file);
+        }
     }
 }
 
@@ -76,6 +79,11 @@ static void ticked(void *context, const body_input *input, const body *b)
     add(log, LOG_TICKED, 0, input, sizeof *input);
     log->hash = add_angles(log->hash, b, angles_rad);
     log->ticks_n++;
+}
+
+void body_log_start(body_log *log)
+{
+    add(log, LOG_START, 0, NULL, 0);
 }
 
 device_watcher body_log_watcher(body_log *log)
@@ -134,9 +142,6 @@ static void write_heading(const rerun *r)
 static bool take_change(rerun *r, bool all_new)
 {
     params_refusal why;
-    if (!r->started) {
-        write_heading(r);
-    }
     const bool good = r->started ? body_change(&r->body, &r->set, all_new, &why)
                                  : body_init(&r->body, &r->set, &why);
     r->started = true;
@@ -148,6 +153,9 @@ static void take_tick(rerun *r, const body_input *input)
     rod_joint angles_rad[ROD_MAX_LINKS];
     body_tick(&r->body, input);
     r->hash = add_angles(r->hash, &r->body, angles_rad);
+    if (r->ticks_n == 0) {
+        write_heading(r);
+    }
     if (r->angles.file != NULL) {
         const double rate_hz = round(1.0 / (double)r->set.rod.tick_s);
         fprintf(r->angles.file, "%.9g", (double)r->ticks_n / rate_hz);
@@ -167,6 +175,9 @@ static bool take_record(rerun *r, FILE *file, int kind, int detail)
     scene_object object;
     float positions_rad[SERVOS_MAX];
     switch (kind) {
+    case LOG_START:
+        r->started = false;
+        return true;
     case LOG_CHANGED:
         return fread(&r->set, sizeof r->set, 1, file) == 1 && take_change(r, detail != 0);
     case LOG_OBJECT:

@@ -24,6 +24,9 @@ int body_log_open(body_log *log, const char *path);
 /* Returns SIM_OK, or complains where the disk was full. */
 int body_log_close(body_log *log, const char *path);
 
+/* The device starts afresh: before device_init. */
+void body_log_start(body_log *log);
+
 /* What the device calls; its context is the body_log. */
 device_watcher body_log_watcher(body_log *log);
 

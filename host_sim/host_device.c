@@ -219,6 +219,7 @@ static void boot(host_device *h, float tick_s, int links_n)
     servo_supply(h, false);
     pwm_stop(h);
     bus_abort(h);
+    body_log_start(&h->log);
     device_init(&h->device, &h->hal, &h->config, &h->boot);
     put_objects(h);
 }

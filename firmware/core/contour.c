@@ -6,10 +6,7 @@
 
 /* A rod of joints that have inertia has none at its nodes, and float32 would lose the softest ways to bend it among the
  * stiffest: so each node gets this share of its joint's, for touching only. */
-#ifndef OWNV
-#define OWNV 1e-5f
-#endif
-static const float OWN_SHARE = OWNV;
+static const float OWN_SHARE = 1e-5f;
 
 /* M's bands. K's are those of D1' beta D1 + D2' eta D2 + diag k, D1 and D2 the first and second
  * difference. The midpoint scheme averages K over three time levels, so a quarter of it is implicit; the

@@ -30,11 +30,11 @@ typedef struct {
     float held_momentum[2]; /* mu - dt gamma / 2 of the held joints */
     float held_damper[2];   /* dt c / 2 */
     float length_m[ROD_MAX_LINKS];
-    float joint_kg_m2[ROD_MAX_LINKS]; /* M's diagonal, and what touching needs: */
-    bending_link link[ROD_MAX_LINKS];
-    float tick_s;
     contour_row row[ROD_MAX_LINKS];
-    penta system; /* M */
+    penta system;                     /* M */
+    float tick_s;                     /* and for touching: */
+    float joint_kg_m2[ROD_MAX_LINKS]; /* M's diagonal */
+    bending_link link[ROD_MAX_LINKS];
 } contour;
 
 /* The row after the last is always zero: it spares the step its end cases. */
@@ -44,8 +44,7 @@ typedef struct {
 } contour_state;
 
 /* Fold and factor; params have passed rod_params_check. shape_nm: what a shape adds to every spring; its pull comes with
- * torque_nm. Returns ROD_OK, or ROD_E_PIVOT with *row_n
- * set to the 1-based row and *model as it was. */
+ * torque_nm. Returns ROD_OK, or ROD_E_PIVOT with *row_n set to the 1-based row and *model as it was. */
 rod_error contour_prepare(contour *model, const rod_params *params, float shape_nm, int *row_n);
 
 /* How much the held joints' angles change when the base moves while the links' far ends stay where

@@ -62,10 +62,10 @@ static void add_moments(const elastic *model, const elastic_state *state, vec3 b
     float per_length_before = 0.0f;
     for (int i = 0; i < n; i++) {
         const elastic_row *row = &model->row[i];
-        const bending_link *link_i = &model->link[i];
+        const bending_link *own = &model->link[i];
         const vec3 speed = vec3_add_scaled(state->speed_m_s[i], state->speed_step[i], THIRD);
         const vec3 far_m = vec3_scale(speed, h);
-        const vec3 turn = vec3_scale(vec3_sub(far_m, near_m), link_i->per_length);
+        const vec3 turn = vec3_scale(vec3_sub(far_m, near_m), own->per_length);
         const vec3 link =
             vec3_add(state->link[i], vec3_add_scaled(turn, state->link_step[i], THIRD));
         float length;
@@ -73,7 +73,7 @@ static void add_moments(const elastic *model, const elastic_state *state, vec3 b
                               .unit = direction(link, state->link[i], &length),
                               .turn = turn,
                               .spin = 0.0f};
-        const vec3 moment = joint_moment(row, link_i->length_m, &near, &far, &o->joint[i]);
+        const vec3 moment = joint_moment(row, own->length_m, &near, &far, &o->joint[i]);
         o->link[i] = far.link;
         o->unit[i] = far.unit;
         o->tension[i] = state->tension[i] + state->tension_step[i];
@@ -85,9 +85,8 @@ static void add_moments(const elastic *model, const elastic_state *state, vec3 b
                 o->node[i - 2] = vec3_add(o->node[i - 2], pull);
             }
         }
-        pull_before =
-            vec3_add_scaled(vec3_scale(moment, link_i->per_length), far.unit, o->tension[i]);
-        per_length_before = link_i->per_length;
+        pull_before = vec3_add_scaled(vec3_scale(moment, own->per_length), far.unit, o->tension[i]);
+        per_length_before = own->per_length;
 
         vec3 force = vec3_scale(far_m, -row->drag);
         force.z -= row->mass_kg * model->fall_m;

@@ -1,7 +1,7 @@
 /* rod.h - an elastic rod of N links that follows a hand: parameters in, a pose per tick in, joint
  * angles out. This is the header to include.
  *
- *     static rod foil;                              // caller-owned; 8.4 KB at 64 links
+ *     static rod foil;                              // caller-owned; 10.9 KB at 64 links
  *     rod_params params;
  *     rod_preset_fill(rod_preset_find("foil"), ROD_MODEL_CONTOUR, 8, &params);
  *     rod_init(&foil, &params, NULL);               // straight and at rest

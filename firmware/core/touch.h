@@ -4,8 +4,10 @@
  *
  * A contact is a node that an object keeps out. Its force is an unknown of the same linear system as the displacements,
  * held within Coulomb's cone, and handed from step to step as the next one's first guess: so at rest it is exact,
- * and a node that sticks does not creep. Work is bounded: at most two objects a node, one where there would be more than TOUCH_CONTACTS_MAX in all; at most TOUCH_PASSES_MAX
- * factorisations a step. Caller-owned memory, no failure: what comes out is finite where what goes in is.
+ * and a node that sticks does not creep. Caller-owned memory; safe in an interrupt.
+ *
+ * Work is bounded: every node asks every object; at most two touch a node, one where there would be more than
+ * TOUCH_CONTACTS_MAX in all; at most TOUCH_PASSES_MAX factorisations a step, one more at a blow.
  */
 #ifndef LIMBER_TOUCH_H
 #define LIMBER_TOUCH_H
@@ -45,8 +47,8 @@ typedef struct {
     bool touched;  /* in the last step, */
     float pressed; /* as hard as that, */
     vec3 force;    /* with that force to begin with; touch_solve makes it this step's */
-    float grip,
-        rub; /* kg: force per metre by which a displacement misses, across the surface and along it */
+    /* kg: force per metre by which a displacement misses, across the surface and along it */
+    float grip, rub;
     float friction;
     float share;  /* of what would make it stick, that the cone lets be: 1 where it sticks */
     uint8_t node; /* from 0: the far end of link 1 */
@@ -70,28 +72,26 @@ typedef struct {
     const bending_link *link;
 } touch_nodes;
 
-/* The points that may touch: within a link's length of an object, at most two objects a node (the nearest). Contacts of the
- * last step give them their first force. Objects are touched by nodes alone, so a rod may get through one, and a
- * hand into one. That nothing is threaded for good, a node is let go where the one before it (node 0: the base) is deep inside
- * the object, or on another side of it: so a rod comes out from the base on. */
+/* The points that may touch: within a link's length of an object, of the nearest two. Contacts of the last step give
+ * them their first force. Objects are touched by nodes alone, so a rod may get through one, and a hand into one.
+ * That nothing is threaded for good, a node is let go where the one before it (node 0: the base) is deep inside the
+ * object, or on another side of it: so a rod comes out from the base on. */
 void touch_find(const scene *objects, const touch_contacts *last, const touch_nodes *nodes,
                 touch_points *points);
 
 /* A step of the rod to which contacts are added. Its links keep their lengths to first order. */
 typedef struct {
     int nodes_n;
-    const float *diagonal, *off1,
-        *off2; /* A as penta_factor takes it, the same for x, y and z; kg */
+    const float *diagonal, *off1, *off2; /* A as penta_factor takes it, for x, y and z; kg */
     const bending_link *link;
-    const vec3
-        *along; /* the links as predicted, of unit length but for what the prediction misses */
+    const vec3 *along; /* the links as predicted: of unit length, nearly */
     const vec3 *force; /* h^2 N */
     float hold;        /* how stiff a link is along itself, so many times what its node is in A */
 } touch_system;
 
 /* Displacements d of the nodes from where they would go: A d = force + contacts + pulls of the links. Each point gets its
  * state and its force; tension gains what the links now pull, h^2 N. Returns false where float32 finds A not
- * positive definite; nothing is then to be used. One to TOUCH_PASSES_MAX passes of about 420 instructions a node. */
+ * positive definite; nothing is then to be used. One to TOUCH_PASSES_MAX passes of about 700 instructions a node. */
 bool touch_solve(const touch_system *system, touch_points *points, vec3 *displacement_m,
                  float *tension);
 

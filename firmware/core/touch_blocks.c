@@ -88,9 +88,9 @@ bool touch_solve_blocks(const touch_system *system, const touch_points *points,
 {
     const int n = system->nodes_n;
     block_row rows[ROD_MAX_LINKS];
-    symmetric3 taken = {0},
-               taken_next = {0}; /* by elimination, from this row's pivot and the next one's */
-    matrix3 taken_right = {0};   /* and from the block to the right */
+    /* what elimination takes: from this row's pivot, from the next one's, from the block to the right */
+    symmetric3 taken = {0}, taken_next = {0};
+    matrix3 taken_right = {0};
     symmetric3 link = outer(links->unit[0], links->hold[0]); /* to the node before */
     int next_point = 0;
     for (int i = 0; i < n; i++) {

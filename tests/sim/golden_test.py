@@ -13,12 +13,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-GOLDEN = Path(__file__).resolve().parent.parent / "data" / "golden_hashes.txt"
+ROOT = Path(__file__).resolve().parents[2]  # where the cases' own files are told from
+GOLDEN = ROOT / "tests" / "data" / "golden_hashes.txt"
 
 
 def replay(sim, track, arguments):
     """The hash that a replay prints, or a word of complaint."""
-    done = subprocess.run([sim, "replay", track, *arguments], capture_output=True, text=True, check=False)
+    done = subprocess.run([Path(sim).resolve(), "replay", track, *arguments], cwd=ROOT, capture_output=True, text=True,
+                          check=False)
     found = re.search(r"^hash +([0-9a-f]{16})$", done.stdout, re.MULTILINE)
     return found.group(1) if done.returncode == 0 and found else f"exit {done.returncode}: {done.stderr.strip()}"
 
