@@ -41,7 +41,7 @@ static inline rod_error capsule_begin(const capsule_header *header, scene *objec
         error = scene_put(objects, i, &header->object[i], NULL);
     }
     if (error == ROD_OK && scene_objects_n(objects) > 0) {
-        rod_set_scene(r, objects);
+        error = rod_set_scene(r, objects);
     }
     return error == ROD_OK && header->shape_strength_nm > 0.0f
                ? rod_set_shape(r, header->shape_rad, header->shape_strength_nm,

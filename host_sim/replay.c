@@ -212,8 +212,9 @@ static int run_rod(replay *r, float *step_us)
     if (result != SIM_OK) {
         return result;
     }
-    if (r->around.objects != NULL) {
-        rod_set_scene(&rod, &r->objects);
+    if (r->around.objects != NULL && rod_set_scene(&rod, &r->objects) != ROD_OK) {
+        return sim_give_up("the rod is too stiff for float32 in the steps it takes among objects: "
+                           "--rate 500 or more");
     }
     if (r->around.shape_rad != NULL &&
         rod_set_shape(&rod, r->around.shape_rad, r->around.shape_strength_nm,

@@ -78,7 +78,7 @@ static bool is_elastic(const replay *r)
 /* Into how many steps the model divides a tick. */
 static int steps_of(const replay *r)
 {
-    return is_elastic(r) ? elastic_steps_n(r->params.tick_s) : 1;
+    return is_elastic(r) ? elastic_steps_n(r->params.tick_s, r->around.objects != NULL) : 1;
 }
 
 static void warn_under_resolved(summary *s, const replay *r)

@@ -59,9 +59,14 @@ bool body_change(body *b, const params_set *set, bool all_new, params_refusal *w
 
 rod_error body_put_object(body *b, int index, const scene_object *object, scene_refusal *refusal)
 {
-    const rod_error error = scene_put(&b->scene, index, object, refusal);
-    /* an empty scene would cost the rod a look at every place */
-    rod_set_scene(&b->rod, scene_objects_n(&b->scene) > 0 ? &b->scene : NULL);
+    static const scene_object NONE = {.kind = SCENE_NONE};
+    rod_error error = scene_put(&b->scene, index, object, refusal);
+    if (error == ROD_OK) { /* an empty scene would cost the rod a look at every place */
+        error = rod_set_scene(&b->rod, scene_objects_n(&b->scene) > 0 ? &b->scene : NULL);
+    }
+    if (error == ROD_E_PIVOT) { /* the first object: it was there alone */
+        (void)scene_put(&b->scene, index, &NONE, NULL);
+    }
     return error;
 }
 

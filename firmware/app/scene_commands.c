@@ -56,7 +56,14 @@ bool device_put_object(device *d, int index, const scene_object *object, char *t
     if (!fits_the_tick(d, index, object, text, why)) {
         return false;
     }
-    (void)body_put_object(&d->body, index, object, NULL);
+    const rod_error error = body_put_object(&d->body, index, object, NULL);
+    if (error != ROD_OK) {
+        *why = (params_refusal){.reason = REASON_COMBINATION,
+                                .entry = -1,
+                                .field = "objects",
+                                .text = rod_error_text(error)};
+        return false;
+    }
     if (d->config.watcher.put != NULL) {
         d->config.watcher.put(d->config.watcher.context, index, object);
     }

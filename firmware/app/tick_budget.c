@@ -20,40 +20,28 @@ static const struct {
  * servo bus of 4.5 Mbaud 19 more. */
 enum { SHARE = 90, SHARE_WITH_BUS = 70 };
 
-static uint32_t steps_of_tick(int model, float tick_s)
+static uint32_t link_cycles(int model, float tick_s, const tick_load *load)
 {
-    return model == ROD_MODEL_ELASTIC ? (uint32_t)elastic_steps_n(tick_s) : 1u;
+    const bool among = load->objects_n > 0;
+    const uint32_t steps_n =
+        model == ROD_MODEL_ELASTIC ? (uint32_t)elastic_steps_n(tick_s, among) : 1u;
+    uint32_t step = CYCLES[model].step_link + (load->shaped ? CYCLES[model].shape_link : 0u);
+    if (among) {
+        step += CYCLES[model].touch_link + (uint32_t)load->objects_n * CYCLES[model].object_link;
+    }
+    return CYCLES[model].tick_link + step * steps_n;
 }
 
-static uint32_t link_cycles(int model, float tick_s)
+uint32_t tick_budget_cycles(int model, int links_n, float tick_s, const tick_load *load)
 {
-    return CYCLES[model].tick_link + CYCLES[model].step_link * steps_of_tick(model, tick_s);
-}
-
-static uint32_t load_link_cycles(int model, float tick_s, const tick_load *load)
-{
-    const uint32_t objects_n = (uint32_t)load->objects_n;
-    const uint32_t scene =
-        objects_n == 0 ? 0u : CYCLES[model].touch_link + objects_n * CYCLES[model].object_link;
-    return (scene + (load->shaped ? CYCLES[model].shape_link : 0u)) * steps_of_tick(model, tick_s);
-}
-
-uint32_t tick_budget_cycles(int model, int links_n, float tick_s)
-{
-    return CYCLES[model].tick + link_cycles(model, tick_s) * (uint32_t)links_n;
-}
-
-uint32_t tick_budget_load_cycles(int model, int links_n, float tick_s, const tick_load *load)
-{
-    return load_link_cycles(model, tick_s, load) * (uint32_t)links_n;
+    return CYCLES[model].tick + link_cycles(model, tick_s, load) * (uint32_t)links_n;
 }
 
 static int links_max(const params_set *set, const tick_load *load, float cycles)
 {
     const int model = set->rod.model;
     const float for_links = cycles - (float)CYCLES[model].tick;
-    const uint32_t a_link =
-        link_cycles(model, set->rod.tick_s) + load_link_cycles(model, set->rod.tick_s, load);
+    const uint32_t a_link = link_cycles(model, set->rod.tick_s, load);
     return for_links > 0.0f ? (int)(for_links / (float)a_link) : 0;
 }
 
@@ -63,9 +51,7 @@ tick_budget tick_budget_of(const params_set *set, const tick_load *load, uint32_
     const bool bus = (int)set->device.servo_kind == SERVOS_BUS;
     const float given_us = rod->tick_s * 1e4f * (float)(bus ? SHARE_WITH_BUS : SHARE);
     const float cycles_per_us = 1e-6f * (float)clock_hz;
-    const float needed =
-        (float)(tick_budget_cycles(rod->model, rod->links_n, rod->tick_s) +
-                tick_budget_load_cycles(rod->model, rod->links_n, rod->tick_s, load));
+    const float needed = (float)tick_budget_cycles(rod->model, rod->links_n, rod->tick_s, load);
     tick_budget budget = {
         .needed_us = (uint32_t)(needed / cycles_per_us + 0.5f),
         .given_us = (uint32_t)(given_us + 0.5f),

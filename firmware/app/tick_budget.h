@@ -22,11 +22,9 @@ typedef struct {
 } tick_budget;
 
 /* The main loop's dearest tick: HEARTBEAT and STATS in it, and the rod's worst step. Parameters do not change in
- * it; one in which they do may take two ticks. model: ROD_MODEL_... */
-uint32_t tick_budget_cycles(int model, int links_n, float tick_s);
-
-/* What the load adds to it: every link asks every object, and any of them may touch. */
-uint32_t tick_budget_load_cycles(int model, int links_n, float tick_s, const tick_load *load);
+ * it; one in which they do may take two ticks. Every link asks every object, and any of them may touch.
+ * model: ROD_MODEL_... */
+uint32_t tick_budget_cycles(int model, int links_n, float tick_s, const tick_load *load);
 
 /* Of a set and a load, at this clock of the core. */
 tick_budget tick_budget_of(const params_set *set, const tick_load *load, uint32_t clock_hz);

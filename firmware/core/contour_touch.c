@@ -29,11 +29,12 @@ static void lay(const contour *model, const rod_joint *angle_rad, const rod_pose
     }
 }
 
-/* How far each node is put, m. */
-static bool displace(const contour *model, touch_points *points, const vec3 *link,
-                     vec3 *displacement_m)
+/* The links' directions become how far each node is put, m. */
+static __attribute__((noinline)) bool displace(const contour *model, touch_points *points,
+                                               vec3 *link)
 {
     const int n = model->links_n;
+    vec3 displacement_m[ROD_MAX_LINKS];
     bending_bands bands;
     vec3 force[ROD_MAX_LINKS];
     float tension[ROD_MAX_LINKS];
@@ -48,7 +49,9 @@ static bool displace(const contour *model, touch_points *points, const vec3 *lin
                                  .along = link,
                                  .force = force,
                                  .hold = LENGTH_HOLD};
-    return touch_solve(&system, points, displacement_m, tension);
+    const bool solved = touch_solve(&system, points, displacement_m, tension);
+    memcpy(link, displacement_m, (size_t)n * sizeof *link);
+    return solved;
 }
 
 static float within(float x, float most)
@@ -59,8 +62,8 @@ static float within(float x, float most)
 /* The joints' turns that put the nodes there, to first order, so that small ones keep their digits: what a link turns
  * in the world, less what the joints before it turn it. The stops have the last word, and the speeds become what the
  * rod has really done. */
-static void turn_joints(const contour *model, const rod_pose *base, const vec3 *displacement_m,
-                        contour_state *to)
+static __attribute__((noinline)) void turn_joints(const contour *model, const rod_pose *base,
+                                                  const vec3 *displacement_m, contour_state *to)
 {
     frame3 frame = quat_frame(base->orientation);
     vec3 turned = {0.0f, 0.0f, 0.0f}, before_m = turned;
@@ -88,12 +91,15 @@ static void turn_joints(const contour *model, const rod_pose *base, const vec3 *
     }
 }
 
-void contour_touch(const contour *model, const contour_state *from, contour_state *to,
-                   const rod_pose *base_from, const rod_pose *base_to, const scene *objects,
-                   touch_contacts *contacts)
+/* The points near objects, and the links' directions after the step. Not inlined, like what comes after it: their arrays
+ * need not lie on the stack together. */
+static __attribute__((noinline)) void find(const contour *model, const contour_state *from,
+                                           const contour_state *to, const rod_pose *base_from,
+                                           const rod_pose *base_to, const scene *objects,
+                                           const touch_contacts *last, touch_points *points,
+                                           vec3 *link)
 {
-    vec3 link[ROD_MAX_LINKS], before_m[ROD_MAX_LINKS], after_m[ROD_MAX_LINKS];
-    vec3 displacement_m[ROD_MAX_LINKS];
+    vec3 before_m[ROD_MAX_LINKS], after_m[ROD_MAX_LINKS];
     lay(model, from->angle_rad, base_from, link, before_m);
     lay(model, to->angle_rad, base_to, link, after_m);
     const touch_nodes nodes = {.nodes_n = model->links_n,
@@ -103,16 +109,24 @@ void contour_touch(const contour *model, const contour_state *from, contour_stat
                                .before_m = before_m,
                                .after_m = after_m,
                                .link = model->link};
-    touch_points points;
-    touch_find(objects, contacts, &nodes, &points);
-    for (int i = 0; i < points.points_n; i++) {
-        points.point[i].force = (vec3){0.0f, 0.0f, 0.0f};
+    touch_find(objects, last, &nodes, points);
+    for (int i = 0; i < points->points_n; i++) {
+        points->point[i].force = (vec3){0.0f, 0.0f, 0.0f}; /* it was not in the step */
     }
+}
+
+void contour_touch(const contour *model, const contour_state *from, contour_state *to,
+                   const rod_pose *base_from, const rod_pose *base_to, const scene *objects,
+                   touch_contacts *contacts)
+{
+    touch_points points;
+    vec3 link[ROD_MAX_LINKS]; /* then how far its far end is put */
+    find(model, from, to, base_from, base_to, objects, contacts, &points, link);
     contacts->contacts_n = 0;
-    if (points.points_n > 0 && displace(model, &points, link, displacement_m)) {
+    if (points.points_n > 0 && displace(model, &points, link)) {
         touch_remember(&points, model->tick_squared_s2, contacts);
     }
     if (contacts->contacts_n > 0) {
-        turn_joints(model, base_to, displacement_m, to);
+        turn_joints(model, base_to, link, to);
     }
 }

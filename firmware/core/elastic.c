@@ -22,21 +22,40 @@ void elastic_straight_stiffness(const elastic *model, float *stiffness)
 }
 
 /* And a little, for ticks that float32 makes a little longer: 0.01f is ten steps, not eleven. */
-static const float STEP_S = 1.0001e-3f, LONGEST_STEP_S = 2.0002e-3f;
+static const float STEP_S = 1.0001e-3f, LONGEST_STEP_S = 2.0002e-3f, STEP_AMONG_S = 4.0004e-3f;
 
-int elastic_steps_n(float tick_s)
+int elastic_steps_n(float tick_s, bool among)
 {
+    const float step_s = among ? STEP_AMONG_S : STEP_S;
     int steps_n = 1;
-    while (tick_s > LONGEST_STEP_S && tick_s > (float)steps_n * STEP_S) {
+    while (tick_s > LONGEST_STEP_S && tick_s > (float)steps_n * step_s) {
         steps_n++;
     }
     return steps_n;
 }
 
-rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n)
+static void stretch(vec3 *v, float ratio)
+{
+    *v = vec3_scale(*v, ratio);
+}
+
+void elastic_change_step(elastic_state *state, int links_n, float ratio)
+{
+    for (int i = 0; i < links_n; i++) {
+        stretch(&state->link_step[i], ratio);
+        stretch(&state->speed_step[i], ratio);
+        state->tension[i] *= ratio * ratio;
+        state->tension_step[i] *= ratio * ratio * ratio;
+    }
+    stretch(&state->base_step_m, ratio);
+    stretch(&state->axis_step, ratio);
+    state->spin_step *= ratio;
+}
+
+rod_error elastic_prepare(elastic *model, const rod_params *params, bool among, int *row_n)
 {
     model->links_n = params->links_n;
-    model->steps_n = elastic_steps_n(params->tick_s);
+    model->steps_n = elastic_steps_n(params->tick_s, among);
     model->step_share = 1.0f / (float)model->steps_n;
     model->h_s = params->tick_s * model->step_share * (2.0f / 3.0f);
     model->per_h = 1.0f / model->h_s;

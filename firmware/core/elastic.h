@@ -49,12 +49,16 @@ typedef struct {
 
 /* How many steps make a tick: one up to 2 ms, and as many as keep each within 1 ms beyond, while the base goes smoothly
  * from pose to pose (base_path.h). So a rod is as true at 100 Hz as at 1 kHz, and as costly a second; 500 Hz
- * costs half and is a little less true. */
-int elastic_steps_n(float tick_s);
+ * costs half and is a little less true. Among objects, where a step costs four times as much, steps are up to 4 ms: what
+ * fits a small processor at 250 Hz is one step then, and what touches is no less true. */
+int elastic_steps_n(float tick_s, bool among);
 
 /* Fold; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n set to the 1-based row;
  * *model is then not to be used. */
-rod_error elastic_prepare(elastic *model, const rod_params *params, int *row_n);
+rod_error elastic_prepare(elastic *model, const rod_params *params, bool among, int *row_n);
+
+/* The same motion in steps `ratio` times as long. */
+void elastic_change_step(elastic_state *state, int links_n, float ratio);
 
 /* A state from joint angles, what they gained in the last tick, and how the base moved in it. Both have
  * links_n rows. */

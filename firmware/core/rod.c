@@ -22,7 +22,7 @@ typedef union {
     elastic elastic;
 } prepared;
 
-static rod_error prepare(prepared *model, const rod_params *params, float shape_nm,
+static rod_error prepare(prepared *model, const rod_params *params, float shape_nm, bool among,
                          rod_refusal *refusal)
 {
     const rod_error error = rod_params_check(params, refusal);
@@ -31,7 +31,7 @@ static rod_error prepare(prepared *model, const rod_params *params, float shape_
     }
     int row_n;
     const rod_error pivot = params->model == ROD_MODEL_ELASTIC
-                                ? elastic_prepare(&model->elastic, params, &row_n)
+                                ? elastic_prepare(&model->elastic, params, among, &row_n)
                                 : contour_prepare(&model->contour, params, shape_nm, &row_n);
     if (pivot != ROD_OK && refusal != NULL) {
         *refusal = (rod_refusal){pivot, NULL, row_n - 1, 0.0f, 0.0f, 0.0f};
@@ -52,13 +52,13 @@ static void put_in_place(rod *r, const prepared *model, const rod_params *params
 rod_error rod_init(rod *r, const rod_params *params, rod_refusal *refusal)
 {
     prepared model;
-    const rod_error error = prepare(&model, params, 0.0f, refusal);
+    const rod_error error = prepare(&model, params, 0.0f, false, refusal);
     if (error == ROD_OK) {
         put_in_place(r, &model, params);
         memset(&r->shape, 0, sizeof r->shape);
         r->restored_n = 0;
         rod_set_force(r, NULL, NULL);
-        rod_set_scene(r, NULL);
+        r->objects = NULL;
         rod_reset(r);
     }
     return error;
@@ -123,7 +123,8 @@ rod_error rod_set_params(rod *r, const rod_params *params, rod_refusal *refusal)
 {
     prepared model;
     const bool shaped = may_have_shape(params) && params->links_n == r->params.links_n;
-    const rod_error error = prepare(&model, params, shaped ? r->shape.strength_nm : 0.0f, refusal);
+    const rod_error error =
+        prepare(&model, params, shaped ? r->shape.strength_nm : 0.0f, r->objects != NULL, refusal);
     if (error != ROD_OK) {
         return error;
     }
@@ -169,10 +170,31 @@ void rod_set_force(rod *r, rod_force_fn force, void *context)
     r->force_context = context;
 }
 
-void rod_set_scene(rod *r, const scene *objects)
+/* With objects or without, ticks may be of other steps. */
+static rod_error change_steps(rod *r, bool among)
 {
-    r->objects = objects;
-    r->contacts.contacts_n = objects != NULL ? r->contacts.contacts_n : 0;
+    elastic *model = &r->as.elastic.model;
+    if (!rod_is_elastic(r) || elastic_steps_n(r->params.tick_s, among) == model->steps_n) {
+        return ROD_OK;
+    }
+    elastic other;
+    int row_n;
+    const rod_error error = elastic_prepare(&other, &r->params, among, &row_n);
+    if (error == ROD_OK) {
+        elastic_change_step(&r->as.elastic.state, r->params.links_n, other.h_s * model->per_h);
+        *model = other;
+    }
+    return error;
+}
+
+rod_error rod_set_scene(rod *r, const scene *objects)
+{
+    const rod_error error = change_steps(r, objects != NULL);
+    if (error == ROD_OK) {
+        r->objects = objects;
+        r->contacts.contacts_n = objects != NULL ? r->contacts.contacts_n : 0;
+    }
+    return error;
 }
 
 const touch_contact *rod_contacts(const rod *r, int *contacts_n)

@@ -1,7 +1,7 @@
 /* rod.h - an elastic rod of N links that follows a hand: parameters in, a pose per tick in, joint
  * angles out. This is the header to include.
  *
- *     static rod foil;                              // caller-owned; 10.9 KB at 64 links
+ *     static rod foil;                              // caller-owned; 11.3 KB at 64 links
  *     rod_params params;
  *     rod_preset_fill(rod_preset_find("foil"), ROD_MODEL_CONTOUR, 8, &params);
  *     rod_init(&foil, &params, NULL);               // straight and at rest
@@ -79,8 +79,10 @@ void rod_set_force(rod *r, rod_force_fn force, void *context);
 
 /* Objects to touch from now on; NULL for none (as after rod_init). The scene stays the caller's, who may change it
  * between two steps: an object may appear, move and vanish at any time. One that moves is taken as
- * standing still in each step; nodes that find themselves inside one are let out at TOUCH_ESCAPE_M_S. */
-void rod_set_scene(rod *r, const scene *objects);
+ * standing still in each step; nodes that find themselves inside one are let out at TOUCH_ESCAPE_M_S. An empty scene
+ * counts as one: give NULL where there is nothing. Errors: ROD_E_PIVOT, for an elastic rod at a tick beyond 2 ms
+ * that float32 does not resolve in the longer steps it takes among objects (elastic.h). */
+rod_error rod_set_scene(rod *r, const scene *objects);
 
 /* What touched in the last step: *contacts_n of them, by node, at most two a node. A force is what the object pushes the
  * node with, N, in the world. Points into the rod; valid until the next call that takes a non-const rod. */

@@ -13,6 +13,7 @@ enum { BOARD_HZ = 168000000, OSCILLATOR_HZ = 16000000 };
 static params all;
 static params_refusal why;
 static char text[MESSAGES_TEXT_MAX + 1];
+static const tick_load NOTHING = {0, false};
 static tick_load load; /* none, but where a test says so */
 
 void setUp(void)
@@ -107,33 +108,45 @@ static void needs_grow_with_the_links_and_the_clock_divides_them(void)
     TEST_ASSERT_EQUAL_UINT32(fast.given_us, slow.given_us);
     TEST_ASSERT_EQUAL_UINT32(900, fast.given_us);
     for (int model = 0; model < ROD_MODEL_COUNT; model++) {
-        const uint32_t a_link =
-            tick_budget_cycles(model, 11, 1e-3f) - tick_budget_cycles(model, 10, 1e-3f);
+        const uint32_t a_link = tick_budget_cycles(model, 11, 1e-3f, &NOTHING) -
+                                tick_budget_cycles(model, 10, 1e-3f, &NOTHING);
         TEST_ASSERT_TRUE(a_link > 0);
-        TEST_ASSERT_EQUAL_UINT32(tick_budget_cycles(model, 10, 1e-3f) + 30 * a_link,
-                                 tick_budget_cycles(model, 40, 1e-3f));
+        TEST_ASSERT_EQUAL_UINT32(tick_budget_cycles(model, 10, 1e-3f, &NOTHING) + 30 * a_link,
+                                 tick_budget_cycles(model, 40, 1e-3f, &NOTHING));
     }
+}
+
+static uint32_t more(int model, int links_n, float tick_s, tick_load with)
+{
+    return tick_budget_cycles(model, links_n, tick_s, &with) -
+           tick_budget_cycles(model, links_n, tick_s, &NOTHING);
 }
 
 /* Every link asks every object in each step, and any link may touch. */
 static void objects_and_shapes_take_time(void)
 {
     for (int model = 0; model < ROD_MODEL_COUNT; model++) {
-        load = (tick_load){1, false};
-        const uint32_t one = tick_budget_load_cycles(model, 10, 1e-3f, &load);
-        load.objects_n = 8;
-        const uint32_t eight = tick_budget_load_cycles(model, 10, 1e-3f, &load);
-        load.shaped = true;
-        const uint32_t shaped = tick_budget_load_cycles(model, 10, 1e-3f, &load);
+        const uint32_t one = more(model, 10, 1e-3f, (tick_load){1, false});
+        const uint32_t eight = more(model, 10, 1e-3f, (tick_load){8, false});
+        const uint32_t shaped = more(model, 10, 1e-3f, (tick_load){8, true});
         TEST_ASSERT_TRUE(0 < one && one < eight && eight < shaped);
-        TEST_ASSERT_EQUAL_UINT32(2 * shaped, tick_budget_load_cycles(model, 20, 1e-3f, &load));
-        load = (tick_load){0, false};
-        TEST_ASSERT_EQUAL_UINT32(0, tick_budget_load_cycles(model, 20, 1e-3f, &load));
+        TEST_ASSERT_EQUAL_UINT32(2 * shaped, more(model, 20, 1e-3f, (tick_load){8, true}));
     }
-    load = (tick_load){2, true};
-    const uint32_t a_step = tick_budget_load_cycles(ROD_MODEL_ELASTIC, 10, 1e-3f, &load);
-    TEST_ASSERT_EQUAL_UINT32(4 * a_step,
-                             tick_budget_load_cycles(ROD_MODEL_ELASTIC, 10, 4e-3f, &load));
+    const uint32_t a_shape = more(ROD_MODEL_ELASTIC, 10, 1e-3f, (tick_load){0, true});
+    TEST_ASSERT_EQUAL_UINT32(4 * a_shape, more(ROD_MODEL_ELASTIC, 10, 4e-3f, (tick_load){0, true}));
+    /* among objects steps are longer: 4 ms are one */
+    TEST_ASSERT_EQUAL_UINT32(
+        tick_budget_cycles(ROD_MODEL_ELASTIC, 10, 1e-3f, &(tick_load){2, false}),
+        tick_budget_cycles(ROD_MODEL_ELASTIC, 10, 4e-3f, &(tick_load){2, false}));
+}
+
+/* The whole of what a scene may hold, at rods of fifty links: contour at 300 Hz, elastic at 250. */
+static void fifty_links_among_eight_objects_fit(void)
+{
+    load = (tick_load){8, false};
+    TEST_ASSERT_TRUE(fits(ROD_MODEL_CONTOUR, 50, SERVOS_NONE, 1.0f / 300.0f, BOARD_HZ));
+    TEST_ASSERT_TRUE(fits(ROD_MODEL_ELASTIC, 50, SERVOS_NONE, 4e-3f, BOARD_HZ));
+    TEST_ASSERT_FALSE(fits(ROD_MODEL_ELASTIC, 50, SERVOS_NONE, 2e-3f, BOARD_HZ));
 }
 
 /* What is told as the most that fits does fit, and one more does not. */
@@ -176,7 +189,7 @@ static void refused_objects_have_the_arithmetic(void)
     TEST_ASSERT_EQUAL_FLOAT(10.0f, why.max);
     load = (tick_load){8, true};
     TEST_ASSERT_FALSE(fits(ROD_MODEL_ELASTIC, 256, SERVOS_NONE, 2e-2f, OSCILLATOR_HZ));
-    TEST_ASSERT_EQUAL_STRING("elastic, 256 links, 8 objects, a shape: 2971706 us at 16 MHz, "
+    TEST_ASSERT_EQUAL_STRING("elastic, 256 links, 8 objects, a shape: 756506 us at 16 MHz, "
                              "a tick of 20000 has 18000",
                              why.text);
 }
@@ -188,6 +201,7 @@ int main(void)
     RUN_TEST(a_refusal_has_the_arithmetic);
     RUN_TEST(the_longest_text_has_room);
     RUN_TEST(objects_and_shapes_take_time);
+    RUN_TEST(fifty_links_among_eight_objects_fit);
     RUN_TEST(the_most_objects_are_the_most);
     RUN_TEST(refused_objects_have_the_arithmetic);
     RUN_TEST(needs_grow_with_the_links_and_the_clock_divides_them);

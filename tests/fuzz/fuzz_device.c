@@ -236,8 +236,10 @@ static void tick(void)
     PROMISE(!world.plant.powered || may_move || state == SUPERVISOR_DISARMED ||
             state == SUPERVISOR_LIMP);
     const rod_joint *angles = rod_angles(&d->body.rod);
+    /* contour has stops; an elastic rod an object or a shape can turn to anywhere */
+    const float most = d->params.in_force.rod.model == ROD_MODEL_CONTOUR ? 1.6f : 3.2f;
     for (int i = 0; i < d->params.in_force.rod.links_n; i++) {
-        PROMISE(fabsf(angles[i][0]) < 1.6f && fabsf(angles[i][1]) < 1.6f);
+        PROMISE(fabsf(angles[i][0]) < most && fabsf(angles[i][1]) < most);
     }
     if (world.rebooted) {
         start();

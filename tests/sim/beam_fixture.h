@@ -176,7 +176,7 @@ static inline ringing bdf2_of(ringing true_one, double rate_hz)
 
 static inline double beam_step_rate_hz(const rod_params *params)
 {
-    return elastic_steps_n(params->tick_s) / (double)params->tick_s;
+    return elastic_steps_n(params->tick_s, false) / (double)params->tick_s;
 }
 
 typedef struct {

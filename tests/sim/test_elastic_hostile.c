@@ -175,7 +175,7 @@ static double speed_bound_m_s(double reach_m)
         length_m += (double)r.params.length_m[i];
     }
     const double step_m = 2.0 * sqrt(3.0) * reach_m + 2.0 * length_m;
-    return 2.0 * step_m * elastic_steps_n(r.params.tick_s) / (double)r.params.tick_s;
+    return 2.0 * step_m * elastic_steps_n(r.params.tick_s, false) / (double)r.params.tick_s;
 }
 
 static void change_in_flight(void)
@@ -206,7 +206,7 @@ static void any_valid_rod_under_any_motion_stays_finite_and_whole(void)
         const double reach_m = random_magnitude(&seed, 1e-2, 1000.0);
         double bound_m_s = 0.0; /* a change keeps speeds: the largest of all rods in this set */
         rod_pose base = random_pose(&seed, reach_m);
-        const int ticks_n = 16 + 48 / elastic_steps_n(params.tick_s);
+        const int ticks_n = 16 + 48 / elastic_steps_n(params.tick_s, false);
         for (int tick = 0; tick < ticks_n; tick++) {
             base = next_pose(kind, tick, reach_m, base);
             change_in_flight();
@@ -249,7 +249,7 @@ static void draw_uniform_rod(rod_params *p)
     p->gravity_m_s2 = one_in(2) ? 9.81f : 0.0f;
     const double length_m = random_magnitude(&seed, 0.01, 0.3),
                  mass_kg = random_magnitude(&seed, 1e-4, 1.0);
-    const double step_s = (double)p->tick_s / elastic_steps_n(p->tick_s), h_s = step_s * 2.0 / 3.0;
+    const double step_s = (double)p->tick_s / elastic_steps_n(p->tick_s, false), h_s = step_s * 2.0 / 3.0;
     const double both = random_magnitude(&seed, 1e-3, 1e6) * mass_kg * length_m * length_m;
     const double damped_share = one_in(2) ? 0.0 : random_between(&seed, 0.0, 1.0);
     for (int i = 0; i < p->links_n; i++) {
@@ -292,7 +292,7 @@ static void rod_left_alone_comes_to_rest(void)
             base = next_pose(kind, tick, reach_m, base);
             TEST_ASSERT_EQUAL_INT(ROD_OK, rod_step(&r, &base));
         }
-        (void)largest_turn(&base, QUIET_STEPS_N / elastic_steps_n(params.tick_s));
+        (void)largest_turn(&base, QUIET_STEPS_N / elastic_steps_n(params.tick_s, false));
         restless_n += largest_turn(&base, REST_N) > AT_REST_RAD ? 1 : 0;
     }
     printf("%ld of %ld rods do not come to rest\n", restless_n, rods_n);

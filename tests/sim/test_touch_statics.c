@@ -93,8 +93,7 @@ static void press(int kind, double friction, bool tip_first)
     (void)move_hand((vec3){0.0f, 0.0f, -0.054f}, 0.2, 4.0);
 }
 
-/* Along the way out, and within Coulomb's cone: to what the normal turns on round things in a correction, and for contour to
- * what two passes leave. */
+/* Along the way out, and within Coulomb's cone, to what the normal of round things turns in one correction. */
 static void expect_good_contacts(double friction)
 {
     int contacts_n;
@@ -112,8 +111,7 @@ static void expect_good_contacts(double friction)
         const double out = (double)vec3_dot(gap.normal, c->force_newton);
         const vec3 along = vec3_add_scaled(c->force_newton, gap.normal, (float)-out);
         TEST_ASSERT_TRUE(out > 0.0);
-        const double beyond = params.model == ROD_MODEL_ELASTIC ? 1e-3 : 5e-3;
-        TEST_ASSERT_TRUE(length_double(along) <= (friction + beyond) * out);
+        TEST_ASSERT_TRUE(length_double(along) <= (friction + 1e-3) * out);
     }
 }
 

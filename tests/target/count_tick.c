@@ -150,8 +150,7 @@ static void tell_budget(const char *name, int model, int links_n, float tick_s, 
 {
     const tick_load load = {.objects_n = objects_n};
     printf("# budget %s %d %lu\n", name, links_n,
-           (unsigned long)(tick_budget_cycles(model, links_n, tick_s) +
-                           tick_budget_load_cycles(model, links_n, tick_s, &load)));
+           (unsigned long)tick_budget_cycles(model, links_n, tick_s, &load));
 }
 
 /* The same device with the other model; its parts but for the step are the same. */

@@ -38,7 +38,7 @@ void tearDown(void) {}
 static inline void prepare(void)
 {
     int row_n;
-    TEST_ASSERT_EQUAL_INT(ROD_OK, elastic_prepare(&model, &params, &row_n));
+    TEST_ASSERT_EQUAL_INT(ROD_OK, elastic_prepare(&model, &params, false, &row_n));
 }
 
 static inline void lay(elastic_state *s, const rod_pose *base, const rod_joint *angle_rad)

@@ -225,7 +225,8 @@ static void long_tick_is_many_steps(void)
 {
     const rod_joint bent[4] = {{0.3f, 0.1f}, {-0.2f, 0.2f}, {0.4f, -0.3f}, {0.1f, 0.2f}};
     for (int ms = 1; ms <= 100; ms++) {
-        TEST_ASSERT_EQUAL_INT(ms <= 2 ? 1 : ms, elastic_steps_n((float)(0.001 * ms)));
+        TEST_ASSERT_EQUAL_INT(ms <= 2 ? 1 : ms, elastic_steps_n((float)(0.001 * ms), false));
+        TEST_ASSERT_EQUAL_INT((ms + 3) / 4, elastic_steps_n((float)(0.001 * ms), true));
     }
     lay(&twin, &ORIGIN, bent);
     rest(&twin, &ORIGIN, 40);
@@ -249,7 +250,7 @@ static void stiffness_that_float32_cannot_factor_is_refused(void)
         params.mass_kg[i] = 1e-6f;
     }
     TEST_ASSERT_EQUAL_INT(ROD_OK, rod_params_check(&params, NULL));
-    TEST_ASSERT_EQUAL_INT(ROD_E_PIVOT, elastic_prepare(&model, &params, &row_n));
+    TEST_ASSERT_EQUAL_INT(ROD_E_PIVOT, elastic_prepare(&model, &params, false, &row_n));
     TEST_ASSERT_TRUE(row_n >= 1 && row_n <= 20);
 }
 

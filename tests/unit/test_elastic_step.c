@@ -48,7 +48,7 @@ static void random_params(int n, bool damped)
         params.damper[i] = (float)between(0.0, damped ? 0.3 / n : 0.0);
     }
     int row_n;
-    TEST_ASSERT_EQUAL_INT(ROD_OK, elastic_prepare(&model, &params, &row_n));
+    TEST_ASSERT_EQUAL_INT(ROD_OK, elastic_prepare(&model, &params, false, &row_n));
     ref_elastic_init(&ref, &params);
 }
 

@@ -146,6 +146,53 @@ static void make_unfactorable(rod_params *p)
     }
 }
 
+/* At 100 Hz a scene makes ten steps a tick three: the rod swings on as it did, though nothing is near it, and goes back to ten
+ * where it is taken away. */
+static void test_a_scene_changes_the_steps_and_not_the_motion(void)
+{
+    static scene far_away;
+    const scene_object ball = {.kind = SCENE_SPHERE,
+                               .place_m = {50.0f, 0.0f, 0.0f},
+                               .orientation = {0.0f, 0.0f, 0.0f, 1.0f},
+                               .radius_m = 1.0f};
+    TEST_ASSERT_EQUAL_INT(ROD_OK, scene_put(&far_away, 0, &ball, NULL));
+    params.tick_s = 0.01f;
+    swing(&one);
+    swing(&twin);
+    TEST_ASSERT_EQUAL_INT(ROD_OK, rod_set_scene(&one, &far_away));
+    TEST_ASSERT_EQUAL_INT(3, one.as.elastic.model.steps_n);
+    float largest = 0.0f;
+    for (int tick = 0; tick < 50; tick++) {
+        follow(&one, 1.0 + 0.01 * tick, 1);
+        follow(&twin, 1.0 + 0.01 * tick, 1);
+        expect_near(rod_angles(&twin), rod_angles(&one), 6, 0.01f);
+        largest = fmaxf(largest, fabsf(rod_angles(&twin)[0][ROD_THETA]));
+    }
+    TEST_ASSERT_TRUE(largest > 0.1f);
+    TEST_ASSERT_EQUAL_INT(ROD_OK, rod_set_scene(&one, NULL));
+    TEST_ASSERT_EQUAL_INT(10, one.as.elastic.model.steps_n);
+    follow(&one, 1.5, 20);
+    follow(&twin, 1.5, 20);
+    expect_near(rod_angles(&twin), rod_angles(&one), 6, 0.01f);
+}
+
+/* Hinges between stiff pairs: float32 loses what keeps the matrix definite in steps of 3.3 ms, though not in those of 1 ms. */
+static void test_a_scene_whose_steps_float32_cannot_take_is_refused(void)
+{
+    static const scene nothing;
+    params.tick_s = 0.01f;
+    params.links_n = 20;
+    for (int i = 0; i < params.links_n; i++) {
+        params.spring[i] = i % 2 ? 631976.0f : 0.0f;
+        params.mass_kg[i] = 2.22222e-4f;
+    }
+    TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(&one, &params, NULL));
+    rest(&one, &AT_ORIGIN, 2);
+    const rod before = one;
+    TEST_ASSERT_EQUAL_INT(ROD_E_PIVOT, rod_set_scene(&one, &nothing));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &one, sizeof one);
+}
+
 static void test_refusals_change_nothing(void)
 {
     const rod_pose bad_poses[] = {{{NAN, 0.0f, 0.0f}, AT_ORIGIN.orientation},
@@ -218,6 +265,8 @@ int main(void)
     RUN_TEST(test_new_links_are_straight_and_at_rest_and_old_ones_vanish);
     RUN_TEST(test_models_hand_on_angles_and_increments);
     RUN_TEST(test_reset_and_init_leave_nothing_behind);
+    RUN_TEST(test_a_scene_changes_the_steps_and_not_the_motion);
+    RUN_TEST(test_a_scene_whose_steps_float32_cannot_take_is_refused);
     RUN_TEST(test_refusals_change_nothing);
     RUN_TEST(test_nodes_are_those_of_the_angles_and_of_the_links);
     RUN_TEST(test_hostile_ticks_are_counted);

@@ -126,7 +126,10 @@ static void expect_gap(const scene_object *o, vec3 point_m)
     to_axes(&axes, (vec3){0.0f, 0.0f, 0.0f}, gap.normal, found);
 
     const double rounding_m = 1e-6 * (size_of(o) + length_double(point_m));
+    float gap_alone_m;
+    scene_gaps_m(&s.body[0], &point_m, 1, &gap_alone_m);
     TEST_ASSERT_DOUBLE_WITHIN(rounding_m, distance_m, (double)gap.gap_m);
+    TEST_ASSERT_DOUBLE_WITHIN(rounding_m, distance_m, (double)gap_alone_m);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.0, length_double(gap.normal));
     if (o->kind != SCENE_PLANE) { /* deep inside several ways out may be as good */
         TEST_ASSERT_DOUBLE_WITHIN(2.0 * rounding_m, distance_m, beyond_face(&q, found));

@@ -79,6 +79,35 @@ static void pressed_tips_are_reported(void)
     }
 }
 
+/* Two ceilings in one place, 1 mm under the top of a long level rod: each node would touch both, and there are places
+ * for some of that. No node goes without. */
+static void nodes_that_touch_two_things_share_the_places(void)
+{
+    for (int model = 0; model < ROD_MODEL_COUNT; model++) {
+        take_rod(model);
+        params.links_n = ROD_MAX_LINKS;
+        hand.orientation = quat_about((vec3){0.0f, 1.0f, 0.0f}, 0.5 * PI);
+        TEST_ASSERT_EQUAL_INT(ROD_OK, rod_init(&one, &params, NULL));
+        rest(&one, &hand, 1);
+        for (int i = 0; i < 2; i++) {
+            const scene_object ceiling = {.kind = SCENE_PLANE,
+                                          .place_m = {0.0f, 0.0f, 0.049f},
+                                          .orientation = {1.0f, 0.0f, 0.0f, 0.0f}};
+            TEST_ASSERT_EQUAL_INT(ROD_OK, scene_put(&objects, i, &ceiling, NULL));
+        }
+        rod_set_scene(&one, &objects);
+        for (int n = 0; n < 20; n++) {
+            rest(&one, &hand, 1);
+            TEST_ASSERT_TRUE(contacts_n() <= TOUCH_CONTACTS_MAX);
+            TEST_ASSERT_TRUE(n > 0 || contacts_n() > 0);
+        }
+        (void)rod_nodes(&one, nodes);
+        for (int i = 1; i <= ROD_MAX_LINKS; i++) {
+            TEST_ASSERT_TRUE(nodes[i].z < 0.0495f);
+        }
+    }
+}
+
 /* The floor is 1 m under a rod of 30 cm: not a bit is other than without. */
 static void scenes_out_of_reach_change_no_bit(void)
 {
@@ -154,6 +183,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(pressed_tips_are_reported);
+    RUN_TEST(nodes_that_touch_two_things_share_the_places);
     RUN_TEST(scenes_out_of_reach_change_no_bit);
     RUN_TEST(equal_touching_is_equal_to_the_bit);
     RUN_TEST(objects_that_are_gone_are_forgotten);
