@@ -6,7 +6,7 @@
 void bending_assemble(const bending_link *link, int links_n, const float *stiffness,
                       const float *tension, bending_bands *bands)
 {
-    float *const diagonal = bands->diagonals + 2, *const off1 = bands->offs1 + 2;
+    float *const diagonal = &bands->diagonals[2], *const off1 = &bands->offs1[2];
     float *const off2 = bands->off2;
     diagonal[-1] = diagonal[-2] = off1[-1] = 0.0f;
     float before = link[0].per_length; /* the ghost link is as long as the first */

@@ -249,7 +249,8 @@ static void draw_uniform_rod(rod_params *p)
     p->gravity_m_s2 = one_in(2) ? 9.81f : 0.0f;
     const double length_m = random_magnitude(&seed, 0.01, 0.3),
                  mass_kg = random_magnitude(&seed, 1e-4, 1.0);
-    const double step_s = (double)p->tick_s / elastic_steps_n(p->tick_s, false), h_s = step_s * 2.0 / 3.0;
+    const double step_s = (double)p->tick_s / elastic_steps_n(p->tick_s, false),
+                 h_s = step_s * 2.0 / 3.0;
     const double both = random_magnitude(&seed, 1e-3, 1e6) * mass_kg * length_m * length_m;
     const double damped_share = one_in(2) ? 0.0 : random_between(&seed, 0.0, 1.0);
     for (int i = 0; i < p->links_n; i++) {

@@ -107,7 +107,8 @@ static uint64_t hash_now(void)
         }
     }
     replay r;
-    TEST_ASSERT_EQUAL_INT_MESSAGE(SIM_OK, replay_run(&source, &params, 1000.0, NULL, &r), complaint);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SIM_OK, replay_run(&source, &params, 1000.0, NULL, &r),
+                                  complaint);
     const uint64_t hash = r.hash;
     replay_free(&r);
     return hash;

@@ -208,7 +208,8 @@ static replay run(double rate_hz)
     replay r;
     rod_params_defaults(&params);
     params.tick_s = (float)(1.0 / rate_hz);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(SIM_OK, replay_run(&source, &params, rate_hz, NULL, &r), complaint);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SIM_OK, replay_run(&source, &params, rate_hz, NULL, &r),
+                                  complaint);
     return r;
 }
 
