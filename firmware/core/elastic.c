@@ -22,13 +22,13 @@ void elastic_straight_stiffness(const elastic *model, float *stiffness)
 }
 
 /* And a little, for ticks that float32 makes a little longer: 0.01f is ten steps, not eleven. */
-static const float STEP_S = 1.0001e-3f, LONGEST_STEP_S = 2.0002e-3f, STEP_AMONG_S = 4.0004e-3f;
+static const float STEP_S = 1.0001e-3f, LONGEST_STEP_S = 2.0002e-3f, LONGEST_AMONG_S = 4.0004e-3f;
 
 int elastic_steps_n(float tick_s, bool among)
 {
-    const float step_s = among ? STEP_AMONG_S : STEP_S;
+    const float longest_s = among ? LONGEST_AMONG_S : LONGEST_STEP_S;
     int steps_n = 1;
-    while (tick_s > LONGEST_STEP_S && tick_s > (float)steps_n * step_s) {
+    while (tick_s > longest_s && tick_s > (float)steps_n * STEP_S) {
         steps_n++;
     }
     return steps_n;

@@ -49,8 +49,8 @@ typedef struct {
 
 /* How many steps make a tick: one up to 2 ms, and as many as keep each within 1 ms beyond, while the base goes smoothly
  * from pose to pose (base_path.h). So a rod is as true at 100 Hz as at 1 kHz, and as costly a second; 500 Hz
- * costs half and is a little less true. Among objects, where a step costs four times as much, steps are up to 4 ms: what
- * fits a small processor at 250 Hz is one step then, and what touches is no less true. */
+ * costs half and is a little less true. Among objects, where a step costs four times as much, a tick of up to 4 ms is one
+ * step too, so that long rods fit a small processor (MODEL.md, Section 9, has what that costs). */
 int elastic_steps_n(float tick_s, bool among);
 
 /* Fold; params have passed rod_params_check. Returns ROD_OK, or ROD_E_PIVOT with *row_n set to the 1-based row;

@@ -80,7 +80,7 @@ void rod_set_force(rod *r, rod_force_fn force, void *context);
 /* Objects to touch from now on; NULL for none (as after rod_init). The scene stays the caller's, who may change it
  * between two steps: an object may appear, move and vanish at any time. One that moves is taken as
  * standing still in each step; nodes that find themselves inside one are let out at TOUCH_ESCAPE_M_S. An empty scene
- * counts as one: give NULL where there is nothing. Errors: ROD_E_PIVOT, for an elastic rod at a tick beyond 2 ms
+ * counts as one: give NULL where there is nothing. Errors: ROD_E_PIVOT, for an elastic rod at a tick of 2 to 4 ms
  * that float32 does not resolve in the longer steps it takes among objects (elastic.h). */
 rod_error rod_set_scene(rod *r, const scene *objects);
 

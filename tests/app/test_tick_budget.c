@@ -134,7 +134,7 @@ static void objects_and_shapes_take_time(void)
     }
     const uint32_t a_shape = more(ROD_MODEL_ELASTIC, 10, 1e-3f, (tick_load){0, true});
     TEST_ASSERT_EQUAL_UINT32(4 * a_shape, more(ROD_MODEL_ELASTIC, 10, 4e-3f, (tick_load){0, true}));
-    /* among objects steps are longer: 4 ms are one */
+    /* among objects a tick of 4 ms is one step, too */
     TEST_ASSERT_EQUAL_UINT32(
         tick_budget_cycles(ROD_MODEL_ELASTIC, 10, 1e-3f, &(tick_load){2, false}),
         tick_budget_cycles(ROD_MODEL_ELASTIC, 10, 4e-3f, &(tick_load){2, false}));
@@ -189,7 +189,7 @@ static void refused_objects_have_the_arithmetic(void)
     TEST_ASSERT_EQUAL_FLOAT(10.0f, why.max);
     load = (tick_load){8, true};
     TEST_ASSERT_FALSE(fits(ROD_MODEL_ELASTIC, 256, SERVOS_NONE, 2e-2f, OSCILLATOR_HZ));
-    TEST_ASSERT_EQUAL_STRING("elastic, 256 links, 8 objects, a shape: 756506 us at 16 MHz, "
+    TEST_ASSERT_EQUAL_STRING("elastic, 256 links, 8 objects, a shape: 2971706 us at 16 MHz, "
                              "a tick of 20000 has 18000",
                              why.text);
 }

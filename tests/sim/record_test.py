@@ -79,7 +79,8 @@ class RoundTrip(unittest.TestCase):
         self.assertGreater(max(abs(angle) for row in sent for angle in row[1:]), 0.1, "it hardly moved")
         fitting = {offset: furthest_apart(sent, again, offset, 0.6 * STEP_RAD) for offset in range(-700, 1)}
         best = min(fitting, key=fitting.get)
-        self.assertLessEqual(fitting[best], 0.51 * STEP_RAD, "not the same run")
+        # half a step of rounding, and what the clocks differ by: 5 us at 1 rad/s
+        self.assertLessEqual(fitting[best], 0.55 * STEP_RAD, "not the same run")
         for offset in (best - 1, best + 1):
             self.assertGreater(furthest_apart(sent, again, offset), 10 * STEP_RAD, "a tick off would pass as well")
 
