@@ -28,9 +28,6 @@ enum {
     OPTION_FACTORY,
     OPTION_ECHO,
     OPTION_SCENE,
-    OPTION_SHAPE,
-    OPTION_SHAPE_STRENGTH,
-    OPTION_SHAPE_BLEND,
 };
 
 static const char EXAMPLES[] =
@@ -84,23 +81,23 @@ static int take_option(choices *c, injection *faults, int option, char *text)
     case OPTION_SHAPE:
         return live_text(&c->shape, text);
     case OPTION_SHAPE_STRENGTH:
-        return live_number("--shape-strength", text, 0.0, (double)ROD_SHAPE_STRENGTH_MAX_NM,
-                           &c->shape_strength_nm);
+        return options_number("--shape-strength", text, 0.0, (double)ROD_SHAPE_STRENGTH_MAX_NM,
+                              &c->shape_strength_nm);
     case OPTION_SHAPE_BLEND:
-        return live_number("--shape-blend", text, 0.0, (double)ROD_SHAPE_BLEND_MAX_S,
-                           &c->shape_blend_s);
+        return options_number("--shape-blend", text, 0.0, (double)ROD_SHAPE_BLEND_MAX_S,
+                              &c->shape_blend_s);
     case OPTION_INJECT:
         return injection_add(faults, text);
     case OPTION_SECONDS:
-        return live_number("--seconds", text, 0.0, 1e9, &c->seconds);
+        return options_number("--seconds", text, 0.0, 1e9, &c->seconds);
     case OPTION_RATE:
-        return live_number("--rate", text, 100.0, 2000.0, &c->rate_hz);
+        return options_number("--rate", text, 100.0, 2000.0, &c->rate_hz);
     case OPTION_LINKS:
-        result = live_number("--links", text, 1.0, (double)ROD_MAX_LINKS, &number);
+        result = options_number("--links", text, 1.0, (double)ROD_MAX_LINKS, &number);
         c->links_n = (long)number;
         return result;
     case OPTION_BAUD:
-        result = live_number("--baud", text, 0.0, 1e7, &number);
+        result = options_number("--baud", text, 0.0, 1e7, &number);
         c->baud = (long)number;
         return result;
     case OPTION_SERVOS:
@@ -291,12 +288,7 @@ int sim_device_command(int argc, const char **argv)
          "one smart servo as it comes from the factory: id 1, 57600 baud", NULL},
         {"scene", 0, POPT_ARG_STRING, NULL, OPTION_SCENE,
          "things to touch, in the place of the poses that come", "FILE.ini"},
-        {"shape", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE,
-         "a shape to take: a table of angles or points, arc:DEGREES or coil:TURNS", "SHAPE"},
-        {"shape-strength", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE_STRENGTH,
-         "how strongly, like a spring of so many N m at each joint", "NM"},
-        {"shape-blend", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE_BLEND,
-         "over how long it sets in (0.5)", "S"},
+        OPTIONS_SHAPE,
         {"echo", 0, POPT_ARG_NONE, NULL, OPTION_ECHO, "the device hears itself on the servo bus",
          NULL},
         OPTIONS_END,

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dynamixel_x.h"
+#include "options.h"
 #include "sim.h"
 
 static volatile sig_atomic_t asked_to_stop;
@@ -49,19 +50,10 @@ int live_text(char **to, const char *text)
     return SIM_OK;
 }
 
-int live_number(const char *option, const char *text, double min, double max, double *to)
-{
-    char *end;
-    *to = strtod(text, &end);
-    return end != text && *end == '\0' && *to >= min && *to <= max
-               ? SIM_OK
-               : sim_complain("%s %.40s: must be a number from %g to %g", option, text, min, max);
-}
-
 int live_servo_baud(const char *option, const char *text, uint32_t *to)
 {
     double baud;
-    if (live_number(option, text, 9600.0, 4500000.0, &baud) != SIM_OK) {
+    if (options_number(option, text, 9600.0, 4500000.0, &baud) != SIM_OK) {
         return SIM_BAD_INPUT;
     }
     *to = (uint32_t)baud;

@@ -18,7 +18,6 @@ int live_open_line(line *l, const char *title, const char *pty, const char *tcp)
 
 /* Values of options: SIM_OK, or SIM_BAD_INPUT after complaining. *to is freed by the caller in the end. */
 int live_text(char **to, const char *text);
-int live_number(const char *option, const char *text, double min, double max, double *to);
 
 /* A baud rate that smart servos have. */
 int live_servo_baud(const char *option, const char *text, uint32_t *to);

@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "sim.h"
 
@@ -36,4 +37,13 @@ const char *options_one_argument(poptContext context, const char *command, const
         return NULL;
     }
     return first;
+}
+
+int options_number(const char *option, const char *text, double min, double max, double *to)
+{
+    char *end;
+    *to = strtod(text, &end);
+    return end != text && *end == '\0' && *to >= min && *to <= max
+               ? SIM_OK
+               : sim_complain("%s %.40s: must be a number from %g to %g", option, text, min, max);
 }

@@ -25,9 +25,6 @@ enum {
     OPTION_PER_TICK,
     OPTION_EXPECT_HASH,
     OPTION_SCENE,
-    OPTION_SHAPE,
-    OPTION_SHAPE_STRENGTH,
-    OPTION_SHAPE_BLEND,
     OPTION_CONTACTS
 };
 
@@ -43,16 +40,6 @@ static const char EXAMPLES[] =
     "Tracks: TUM (timestamp tx ty tz qx qy qz qw) or CSV with named columns, EuRoC's included; s, "
     "m.\n"
     "Exit codes: 0 fine, 1 the hash differs, 2 bad input, 3 internal failure\n";
-
-static int take_number(const char *option, const char *text, double min, double max, double *value)
-{
-    char *end;
-    *value = strtod(text, &end);
-    if (end == text || *end != '\0' || !(*value >= min && *value <= max)) {
-        return sim_complain("%s %.40s: must be a number from %g to %g", option, text, min, max);
-    }
-    return SIM_OK;
-}
 
 static int take_hash(replay_choices *c, const char *text)
 {
@@ -90,13 +77,13 @@ static int take_option(replay_choices *c, int option, const char *text)
     case OPTION_MODEL:
         return params_text_model(&c->params, text);
     case OPTION_RATE:
-        return take_number("--rate", text, 10.0, 20000.0, &c->rate_hz);
+        return options_number("--rate", text, 10.0, 20000.0, &c->rate_hz);
     case OPTION_UP:
         return take_up(c, text);
     case OPTION_SCALE:
-        return take_number("--scale", text, 1e-6, 1e6, &c->track.scale);
+        return options_number("--scale", text, 1e-6, 1e6, &c->track.scale);
     case OPTION_MAX_SPEED:
-        return take_number("--max-speed", text, 1e-3, 1e6, &c->track.max_speed_mps);
+        return options_number("--max-speed", text, 1e-3, 1e6, &c->track.max_speed_mps);
     case OPTION_LEFT_HANDED:
         c->track.left_handed = true;
         return SIM_OK;
@@ -118,11 +105,11 @@ static int take_option(replay_choices *c, int option, const char *text)
         return take_path(&c->shape, text);
     case OPTION_SHAPE_STRENGTH:
         c->shape_strength_given = true;
-        return take_number("--shape-strength", text, 0.0, (double)ROD_SHAPE_STRENGTH_MAX_NM,
-                           &c->shape_strength_nm);
+        return options_number("--shape-strength", text, 0.0, (double)ROD_SHAPE_STRENGTH_MAX_NM,
+                              &c->shape_strength_nm);
     case OPTION_SHAPE_BLEND:
-        return take_number("--shape-blend", text, 0.0, (double)ROD_SHAPE_BLEND_MAX_S,
-                           &c->shape_blend_s);
+        return options_number("--shape-blend", text, 0.0, (double)ROD_SHAPE_BLEND_MAX_S,
+                              &c->shape_blend_s);
     case OPTION_PER_TICK:
         return take_path(&c->per_tick_path, text);
     default:
@@ -211,12 +198,7 @@ int replay_options_take(int argc, const char **argv, replay_choices *c, bool *he
          "drop samples that would need more m/s than this", "SPEED"},
         {"scene", 0, POPT_ARG_STRING, NULL, OPTION_SCENE,
          "things to touch, in the place of the track", "FILE.ini"},
-        {"shape", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE,
-         "a shape to take: a table of angles or points, arc:DEGREES or coil:TURNS", "SHAPE"},
-        {"shape-strength", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE_STRENGTH,
-         "how strongly, like a spring of so many N m at each joint", "NM"},
-        {"shape-blend", 0, POPT_ARG_STRING, NULL, OPTION_SHAPE_BLEND,
-         "over how long it sets in (0.5)", "S"},
+        OPTIONS_SHAPE,
         {"angles", 'a', POPT_ARG_STRING, NULL, OPTION_ANGLES,
          "write joint angles: t,theta1,phi1,... s, rad", "OUT.csv"},
         {"nodes", 'n', POPT_ARG_STRING, NULL, OPTION_NODES,

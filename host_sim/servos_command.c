@@ -142,7 +142,7 @@ static int take_option(choices *c, int option, const char *text)
     case OPTION_TCP:
         return live_text(&c->tcp, text);
     case OPTION_COUNT:
-        return live_number("--count", text, 1.0, (double)SERVO_COUNT_MAX, &c->count);
+        return options_number("--count", text, 1.0, (double)SERVO_COUNT_MAX, &c->count);
     case OPTION_BAUD:
         return live_servo_baud("--baud", text, &c->baud);
     case OPTION_FACTORY:

@@ -2,7 +2,7 @@
 """Independent float64 reference for the `elastic` rod, against `limber-sim replay --model elastic`.
 
 Written from the mathematics (firmware/core/MODEL.md, Section 5) on node positions, with dense matrices and rotation
-matrices; recordings are read and resampled by oracle.py. It shares no line with the firmware. Needs numpy.
+matrices; recordings are read and resampled by oracle_track.py. It shares no line with the firmware. Needs numpy.
 """
 import argparse
 import math
@@ -14,8 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from oracle import OneLineParser, UserError, awkward_track, clean, csv_header, given_settings, read_track, resample, \
-    rotation_matrix
+from oracle import OneLineParser
+from oracle_rod import csv_header, given_settings
+from oracle_track import UserError, awkward_track, clean, read_track, resample, rotation_matrix
 
 PER_LINK = {"length": 0.03, "mass": 0.02, "drag": 0.0, "spring": 80.0, "damper": 2.0}
 DEFAULTS = {"links": 4, "gravity": 9.81, **PER_LINK}

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 
-from oracle import Rod, settings_from, simulate
+from oracle_rod import Rod, settings_from, simulate
 
 
 class NaiveRod(Rod):

@@ -131,33 +131,39 @@ static void pressed_rods_stay_outside_and_lie_still(void)
     }
 }
 
+/* Every kind of object, by a foil and by another rod of 20 links, of both models: case i of 16. Returns the model. */
+static int press_tip_first(int i, const char *other, double rate_hz, double friction, double rest_s)
+{
+    const press_case c = {.model = i & 1,
+                          .links_n = 20,
+                          .kind = SCENE_PLANE + i / 2 % 4,
+                          .rod = i / 8 == 0 ? "foil" : other,
+                          .rate_hz = rate_hz,
+                          .friction = friction,
+                          .speed_m_s = 0.2,
+                          .tip_first = true};
+    take_rod(c.rod, c.model, c.links_n, c.rate_hz);
+    params.gravity_m_s2 = 0.0f;
+    set_up(&c);
+    (void)move_hand(vec3_scale(DOWN, 0.052f), c.speed_m_s, rest_s);
+    return c.model;
+}
+
 /* --- let go ------------------------------------------------------------------------------------------- */
 
-/* Withdrawn at 0.1 m/s (0.16 at most): no node gets faster than six times that, and it ends straight. */
+/* Withdrawn at 0.1 m/s (0.16 at most): no node gets faster than three times that, and it ends untouched. */
 static void withdrawn_rods_are_not_kicked(void)
 {
     double fastest[2] = {0.0, 0.0};
     for (int i = 0; i < 16; i++) {
-        const press_case c = {i / 8 == 0 ? "foil" : "fishing-rod",
-                              i & 1,
-                              20,
-                              SCENE_PLANE + i / 2 % 4,
-                              1000.0,
-                              0.0,
-                              0.2,
-                              true,
-                              false};
-        take_rod(c.rod, c.model, c.links_n, c.rate_hz);
-        params.gravity_m_s2 = 0.0f;
-        set_up(&c);
-        (void)move_hand(vec3_scale(DOWN, 0.052f), 0.2, 2.0);
+        const int model = press_tip_first(i, "fishing-rod", 1000.0, 0.0, 2.0);
         const sight seen = move_hand(vec3_scale(UP, 0.1f), 0.1, 1.0);
-        fastest[c.model] = worse(fastest[c.model], seen.fastest_m_s);
+        fastest[model] = worse(fastest[model], seen.fastest_m_s);
         TEST_ASSERT_TRUE(length_double(contact_force()) <= 0.0);
     }
     printf("withdrawn at 0.16 m/s at most: nodes reach %.2f m/s (contour), %.2f m/s (elastic)\n",
            fastest[0], fastest[1]);
-    TEST_ASSERT_TRUE(fastest[0] < 1.0 && fastest[1] < 1.0);
+    TEST_ASSERT_TRUE(fastest[0] < 0.48 && fastest[1] < 0.48);
 }
 
 /* What was bent springs free with what it had, and no more. */
@@ -165,19 +171,7 @@ static void rods_whose_object_is_taken_away_have_no_more_energy_than_before(void
 {
     double worst = 0.0;
     for (int i = 0; i < 16; i++) {
-        const press_case c = {i / 8 == 0 ? "foil" : "whip",
-                              i & 1,
-                              20,
-                              SCENE_PLANE + i / 2 % 4,
-                              i % 3 == 0 ? 500.0 : 1000.0,
-                              0.5,
-                              0.2,
-                              true,
-                              false};
-        take_rod(c.rod, c.model, c.links_n, c.rate_hz);
-        params.gravity_m_s2 = 0.0f;
-        set_up(&c);
-        (void)move_hand(vec3_scale(DOWN, 0.052f), 0.2, 3.0);
+        (void)press_tip_first(i, "whip", i % 3 == 0 ? 500.0 : 1000.0, 0.5, 3.0);
         const double before = energy();
         TEST_ASSERT_TRUE(before > 0.0);
         take_away(0);
